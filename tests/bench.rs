@@ -105,10 +105,8 @@ fn a_study_with_measurements_leads_with_the_finger_that_is_best_on_the_bench() {
     let first = rows.max_by(|a, b| number(a[3]).total_cmp(&number(b[3]))).expect("a line");
     assert!((number(first[3]) - best["bench"]["range_mm"].as_f64().unwrap()).abs() < 1e-3);
     // Printed and measured before, it is not to be printed again.
-    assert_eq!(
-        (&found["answer"]["verdict"], &found["answer"]["finger"]),
-        (&"print".into(), &best["values"])
-    );
+    assert_eq!(found["answer"]["verdict"], "print");
+    assert_eq!(found["answer"]["finger"], best["values"]);
     let kept = folder.read("a/bench.json");
     let mut known: serde_json::Value = serde_json::from_str(&kept).expect("JSON");
     known["ranges"] = serde_json::json!([[best["values"], 9.9]]);

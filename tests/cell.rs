@@ -79,10 +79,8 @@ fn a_nominal_cell_changes_nothing_and_a_row_is_as_if_set() {
         (format!("{TRIAL} usb --cell {rough}"), format!("{TRIAL} usb {set}=0.4"));
     assert_eq!(printed(&in_cell), printed(&as_set));
     assert_ne!(printed(&in_cell), printed(&format!("{TRIAL} usb")));
-    assert_eq!(
-        printed(&format!("{in_cell} {set}=0.3")),
-        printed(&format!("{TRIAL} usb {set}=0.3"))
-    );
+    let smooth = printed(&format!("{in_cell} {set}=0.3"));
+    assert_eq!(smooth, printed(&format!("{TRIAL} usb {set}=0.3")));
     // A row that is usb's alone.
     assert_eq!(printed(&format!("{TRIAL} ket8 --cell {rough}")), printed(&format!("{TRIAL} ket8")));
 }

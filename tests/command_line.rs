@@ -154,10 +154,8 @@ fn a_force_that_the_connector_does_not_withstand_comes_first() {
 #[test]
 fn the_short_help_is_a_screen_and_the_long_one_has_every_option_below_a_heading() {
     let short = optimize_line("-h").succeeds().to_owned();
-    assert!(
-        short.lines().count() < 50 && short.lines().all(|line| line.chars().count() <= 80),
-        "{short}"
-    );
+    assert!(short.lines().count() < 50, "{short}");
+    assert!(short.lines().all(|line| line.chars().count() <= 80), "{short}");
     let titles = ["Study:", "Design:", "Connector:", "Bench:", "Files:"];
     assert!(titles.iter().all(|title| short.contains(&format!("\n{title}\n"))), "{short}");
     for command in finger_opt::commands::COMMANDS {
@@ -165,11 +163,8 @@ fn the_short_help_is_a_screen_and_the_long_one_has_every_option_below_a_heading(
     }
     let long = optimize_line("study --help").succeeds().to_owned();
     let (_, headed) = long.split_once("\nTask, robot and finger:\n").expect("a heading");
-    assert!(
-        ["\nSearch:\n", "\nBench:\n", "\nRun:\n", "\nOutput:\n"]
-            .iter()
-            .all(|title| headed.contains(title))
-    );
+    let titles = ["\nSearch:\n", "\nBench:\n", "\nRun:\n", "\nOutput:\n"];
+    assert!(titles.iter().all(|title| headed.contains(title)), "{headed}");
     assert!(!headed.contains("\nOptions:\n") && headed.contains("--budget"), "{long}");
 }
 

@@ -321,6 +321,7 @@ fn open_and_fine_meshes_are_the_same_shape() {
         .map(|text| text[..text.rfind("facet normal").unwrap()].to_owned() + "endsolid part\n");
     let open = found("open", [&open[0], &open[1]]);
     let [fine_plug, fine_socket] = [finer(&plug, 25), finer(&socket, 30)];
+    let fine = found("fine", [&fine_plug, &fine_socket]);
     let facets = [&fine_plug, &fine_socket].map(|text| text.matches("endfacet").count());
     assert!(facets.iter().sum::<usize>() > 58_000);
     for other in [&open, &fine] {

@@ -1,6 +1,6 @@
 //! Objectives, constraints, fronts and several tasks, through the real binary on the fake engine.
 
-use crate::common::{Ran, Studies, optimize, run};
+use crate::common::{Ran, Studies, command, fake, optimize, optimize_line, run};
 use serde_json::Value;
 use std::fs;
 
@@ -15,10 +15,8 @@ fn number(value: &Value) -> f64 {
 }
 
 fn evaluate(density: u32, direction: u32, more: &[&str]) -> Ran {
-    let (density, direction) = (density.to_string(), direction.to_string());
-    let finger = ["--density", &density, "--direction", &direction];
-    let task = ["evaluate", "--task", "usb", "--engine", "fake"];
-    optimize(&[&task[..], &finger, more].concat())
+    let finger = format!("--density {density} --direction {direction}");
+    fake(&format!("evaluate --task usb {finger} {}", more.join(" ")))
 }
 
 #[test]
@@ -260,51 +258,41 @@ fn a_study_of_several_tasks_keeps_them_and_has_its_own_folder() {
     let rate = |of: &Value| number(&of["success_rate"]);
     let (usb, far) = (rate(&line["user_attrs"]["tasks"][0]), rate(&line["user_attrs"]["tasks"][1]));
     assert_eq!(number(&line["values"][0]), usb.min(far));
-    let mut named =
-        crate::common::command(&["--task", "usb,rj45", "--engine", "fake", "--budget", "2"]);
+    let mut named = command(&["--task", "usb,rj45", "--engine", "fake", "--budget", "2"]);
     run(named.current_dir(&studies.0)).succeeds();
     assert!(studies.dir("results/usb+rj45-gp-seed0/report.html").exists());
 }
 
 #[test]
 fn bad_goals_are_answered_with_2_and_what_would_be_right() {
-    let finger = ["--density", "20", "--direction", "10"];
-    for (arguments, parts) in [
-        (&["--objective", "rnage"][..], &["success-rate, robust-range, peak-force, slip"][..]),
-        (&["--objective", "range,range"], &["range is given twice"]),
-        (&["--objective", "range,slip,peak-force,success-rate"], &["at most 3"]),
-        (&["--constraint", "peak-force<30"], &["MEASURE<=NUMBER", "'peak-force<=30'"]),
-        (&["--constraint", "force<=30"], &["`force`", "peak-force"]),
-        (&["--constraint", "peak-force<=30N"], &["30N", "without its unit"]),
-        (&["--uncertainty", "typical"], &["--uncertainty", "success-rate", "--objective"]),
-        (&["--objective", "success-rate", "--uncertainty", "tipical"], &["did you mean `typical`"]),
-        (&["--objective", "range,slip", "--optimizer", "cma-es"], &["cma-es", "gp, random, sobol"]),
-        (&["--objective", "range,slip", "--optimizer", "cma-es"], &["single objective only"]),
-        (&["--objective", "range,slip", "--polish"], &["--polish", "single objective only"]),
-        (&["--aggregate", "mean"], &["several tasks", "--task usb,rj45"]),
-        (&["--task", "usb,usb"], &["two tasks are called `usb`"]),
-        (&["--task", "usb,usbb"], &["usbb", "ket8, ket12"]),
-        (&["--task", "usb,"], &["ket8, ket12"]),
-        (&["--task", "usb,rj45", "--aggregate", "max"], &["min, mean, weighted"]),
-        (&["--task", "usb,rj45", "--aggregate", "weighted"], &["0 weights for 2 tasks"]),
-        (&["--task", "usb,rj45", "--weights", "1,2"], &["--aggregate weighted"]),
-        (
-            &["--task", "usb,rj45", "--aggregate", "weighted", "--weights", "1"],
-            &["1 weights for 2 tasks"],
-        ),
-        (
-            &["--task", "usb,rj45", "--aggregate", "weighted", "--weights", "1,-1"],
-            &["--weights", "out of range"],
-        ),
+    for (words, parts) in [
+        ("--objective rnage", &["success-rate, robust-range, peak-force, slip"][..]),
+        ("--objective range,range", &["range is given twice"]),
+        ("--objective range,slip,peak-force,success-rate", &["at most 3"]),
+        ("--constraint peak-force<30", &["MEASURE<=NUMBER", "'peak-force<=30'"]),
+        ("--constraint force<=30", &["`force`", "peak-force"]),
+        ("--constraint peak-force<=30N", &["30N", "without its unit"]),
+        ("--uncertainty typical", &["--uncertainty", "success-rate", "--objective"]),
+        ("--objective success-rate --uncertainty tipical", &["did you mean `typical`"]),
+        ("--objective range,slip --optimizer cma-es", &["cma-es", "gp, random, sobol"]),
+        ("--objective range,slip --optimizer cma-es", &["single objective only"]),
+        ("--objective range,slip --polish", &["--polish", "single objective only"]),
+        ("--aggregate mean", &["several tasks", "--task usb,rj45"]),
+        ("--task usb,usb", &["two tasks are called `usb`"]),
+        ("--task usb,usbb", &["usbb", "ket8, ket12"]),
+        ("--task usb,", &["ket8, ket12"]),
+        ("--task usb,rj45 --aggregate max", &["min, mean, weighted"]),
+        ("--task usb,rj45 --aggregate weighted", &["0 weights for 2 tasks"]),
+        ("--task usb,rj45 --weights 1,2", &["--aggregate weighted"]),
+        ("--task usb,rj45 --aggregate weighted --weights 1", &["1 weights for 2 tasks"]),
+        ("--task usb,rj45 --aggregate weighted --weights 1,-1", &["--weights", "out of range"]),
     ] {
         let studies = Studies::new();
-        let given = if arguments.contains(&"--task") { &[][..] } else { &["--task", "usb"] };
-        let study = ["--engine", "fake", "--budget", "4", "--out", &studies.word("s")];
-        optimize(&[&study[..], given, arguments].concat()).fails(2, parts);
+        let given = if words.contains("--task") { "" } else { "--task usb" };
+        fake(&format!("--budget 4 --out {} {given} {words}", studies.word("s"))).fails(2, parts);
         assert!(!studies.dir("s").exists(), "bad usage leaves no folder behind");
     }
-    optimize(&[&["evaluate", "--task", "usb,rj45"], &finger[..]].concat())
-        .fails(2, &["one --task"]);
+    optimize_line("evaluate --task usb,rj45 --density 20 --direction 10").fails(2, &["one --task"]);
     evaluate(20, 10, &["--seed", "1"]).fails(2, &["--uncertainty"]);
 }
 

@@ -39,9 +39,8 @@ fn an_engine_agrees_with_itself() {
     let designs = [designs()[0], designs()[10]];
     let check = run(&tasks, &designs, false);
     assert_eq!((check.agreement(), check.end_difference_mm()), (1.0, Some(0.0)));
-    assert!(
-        check.passed() && check.trials.iter().all(|pair| pair.tip_mm.is_none_or(|by| by == 0.0))
-    );
+    assert!(check.passed());
+    assert!(check.trials.iter().all(|pair| pair.tip_mm.is_none_or(|by| by == 0.0)));
     // What is inside the window inserts, what is outside does not.
     let inside = |pair: &TrialPair| pair.from_end <= 0;
     let inserts = |pair: &TrialPair| pair.outcomes[0] == Outcome::Inserted;

@@ -228,19 +228,14 @@ fn what_is_known_can_be_told_and_is_not_asked_again() {
         let answer = talk.answer(&json!({"tell": [known(0, 3), known(1, 5)]}));
         let best = json!({"id": null, "values": {"x": 0.0, "n": 3.0}, "value": 3.0});
         assert_eq!(answer["best"], best);
+        let at = |values: &str| format!(r#"{{"values":{values},"value":1}}"#);
         for (told, part) in [
-            (r#"{"values":{"x":0,"n":3},"value":1}"#, "told twice"),
-            (r#"{"values":{"x":0},"value":1}"#, "`n` is missing"),
-            (
-                r#"{"values":{"x":0.5,"n":1},"value":1}"#,
-                "`x` is 0.5; accepted: -5 to 5 in steps of 1",
-            ),
-            (
-                r#"{"values":{"x":0,"n":1,"m":1},"value":1}"#,
-                "unknown parameter `m`; accepted: x, n",
-            ),
-            (r#"{"values":{"x":0,"n":1}}"#, "value"),
-            ("[0,1.5]", "must be an object"),
+            (at(r#"{"x":0,"n":3}"#), "told twice"),
+            (at(r#"{"x":0}"#), "`n` is missing"),
+            (at(r#"{"x":0.5,"n":1}"#), "`x` is 0.5; accepted: -5 to 5 in steps of 1"),
+            (at(r#"{"x":0,"n":1,"m":1}"#), "unknown parameter `m`; accepted: x, n"),
+            (r#"{"values":{"x":0,"n":1}}"#.to_owned(), "value"),
+            ("[0,1.5]".to_owned(), "must be an object"),
         ] {
             talk.error(&format!("{{\"tell\":[{told}]}}"), part);
         }

@@ -287,18 +287,13 @@ fn coupled_springs_are_simulated_or_refused() {
 
 #[test]
 fn a_design_outside_the_space_is_answered_with_its_bounds() {
-    for (design, parts) in [
-        (
-            "--density 31 --direction 10",
-            ["--density 31", "density_percent must lie between 10 and"],
-        ),
-        (
-            "--density 20 --direction -1",
-            ["--direction -1", "direction_deg must lie between 0 and 40"],
-        ),
-        ("--density nan --direction 10", ["--density NaN", "must lie between 10 and 30"]),
-        ("--density inf --direction 10", ["--density inf", "between 10 and 30"]),
+    for ([density, direction], parts) in [
+        (["31", "10"], ["--density 31", "density_percent must lie between 10 and"]),
+        (["20", "-1"], ["--direction -1", "direction_deg must lie between 0 and 40"]),
+        (["nan", "10"], ["--density NaN", "must lie between 10 and 30"]),
+        (["inf", "10"], ["--density inf", "between 10 and 30"]),
     ] {
+        let design = format!("--density {density} --direction {direction}");
         fake(&format!("evaluate --task usb {design}")).fails(2, &parts);
         fake(&format!("trial --task usb {design}")).fails(2, &parts);
     }

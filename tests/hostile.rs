@@ -312,6 +312,7 @@ fn no_room_for_an_output_is_a_message_and_leaves_nothing() {
     );
     let trial = "trial --task usb --density 20 --direction 10";
     let finger = "--density 20 --direction 10";
+    let new = "task new mine --engine fake";
     let calibrate = "calibrate --task usb --engine fake --simulations 16 --samples 20 --no-cache --quiet \
                      --measurements published --out";
     fs::create_dir(studies.dir("full")).unwrap();
@@ -320,12 +321,8 @@ fn no_room_for_an_output_is_a_message_and_leaves_nothing() {
     for (words, file) in [
         (calibrate.to_owned(), ""),
         (format!("measure add --task usb {finger} --range-mm 5"), "m.csv"),
-        ("task new mine --engine fake --out".to_owned(), "mine.toml"),
-        (
-            "task new mine --round 8x12 --clearance 0.1 --body 12x12x20 --engine fake --out"
-                .to_owned(),
-            "m.toml",
-        ),
+        (format!("{new} --out"), "mine.toml"),
+        (format!("{new} --round 8x12 --clearance 0.1 --body 12x12x20 --out"), "m.toml"),
         (import, "mine.toml"),
         ("task check usb --engine fake --svg".to_owned(), "t.svg"),
         (format!("export finger --format stl {finger} --out"), "f.stl"),

@@ -463,9 +463,18 @@ fn explore(path: &str, known: &mut Vec<String>) {
         let path = format!("{path}.{key}");
         path.trim_start_matches('.').replace("plug.part", "part").replace("socket.part", "part")
     };
-    let sections =
-        "plug plug.latch socket grip friction finger strategy success success.mated limits";
-    let sections: Vec<&str> = sections.split(' ').collect();
+    let sections = [
+        "plug",
+        "plug.latch",
+        "socket",
+        "grip",
+        "friction",
+        "finger",
+        "strategy",
+        "success",
+        "success.mated",
+        "limits",
+    ];
     let mut below = Vec::new();
     if path.ends_with("part") {
         known.push("part.shape".to_owned());
@@ -542,9 +551,10 @@ fn a_key_and_a_chamfer_are_in_the_file_and_the_task_is_shown() {
     ] {
         optimize_line(&format!("task new a {words} --clearance 0.1")).fails(2, parts);
     }
-    let show = |name: &str| optimize_line(&format!("task show {}", studies.word(name)));
-    show(&format!("chamfered.toml --html {}", studies.word("shown.html"))).succeeds();
+    let show = |words: &str| optimize_line(&format!("task show {words}"));
+    let [chamfered, page] = ["chamfered.toml", "shown.html"].map(|name| studies.word(name));
+    show(&format!("{chamfered} --html {page}")).succeeds();
     let page = studies.read("shown.html");
     assert!(page.contains("mine: ") && page.contains("nominal start with servo"));
-    assert_eq!(show("keyed.toml").succeeds(), keyed);
+    assert_eq!(show(&studies.word("keyed.toml")).succeeds(), keyed);
 }

@@ -83,10 +83,8 @@ fn both_formats_give_the_same_log() {
             let (goal, other) = (a.target.unwrap(), b.target.unwrap());
             assert!((a.position - b.position).norm() < 1e-9 && (a.tilt - b.tilt).abs() < 1e-9);
             assert!((a.force - b.force).norm() < 1e-9 && a.time_s == b.time_s && a.line == b.line);
-            assert!(
-                (goal.position - other.position).norm() < 1e-9
-                    && (goal.tilt - other.tilt).abs() < 1e-9
-            );
+            assert!((goal.position - other.position).norm() < 1e-9);
+            assert!((goal.tilt - other.tilt).abs() < 1e-9);
         }
     }
     let error = read::parse(&rtde(&log, " "), "a.csv", None).unwrap_err().to_string();

@@ -144,16 +144,6 @@ mod tests {
     use input::units::{DEG, MM};
     use std::collections::BTreeMap;
 
-    #[test]
-    fn a_value_out_of_range_is_an_error_of_the_design() {
-        let design = Design::infill(20.0, 0.0).with("task.strategy.tilt_deg", 400.0);
-        let error = template("usb")
-            .apply(&design, &FingerSource::Paper, &at_pad())
-            .unwrap_err()
-            .to_string();
-        assert!(error.starts_with("design: task.strategy.tilt_deg: is 400; "), "{error}");
-    }
-
     fn at_pad() -> Prediction {
         Prediction::exact(2e3, 4e4)
     }
@@ -212,6 +202,7 @@ mod tests {
     fn impossible_values_and_unknown_keys_are_named() {
         for (key, value, words) in [
             ("task.strategy.tilt_deg", 60.0, "strategy.tilt_deg: is 60; it must lie in -45 .. 45"),
+            ("task.strategy.tilt_deg", 400.0, "design: task.strategy.tilt_deg: is 400; "),
             ("task.grip.force_n", f64::NAN, "grip.force_n: is NaN"),
             ("task.strategy.phase.side.move_mm.y", 0.0, "\"side\" move_mm: is zero"),
             ("finger.mass_g", 0.0, "finger.mass_g: is 0; it must lie in"),

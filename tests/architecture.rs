@@ -1,18 +1,6 @@
 //! Rules that the compiler does not keep.
 
-use std::path::Path;
-
-/// Gives every source file under a folder, and its text.
-fn sources(folder: &Path, each: &mut dyn FnMut(&Path, &str)) {
-    for entry in std::fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
-        if path.is_dir() {
-            sources(&path, each);
-        } else if path.extension().is_some_and(|extension| extension == "rs") {
-            each(&path, &std::fs::read_to_string(&path).unwrap());
-        }
-    }
-}
+use crate::common::{files, read, root};
 
 /// Functions that std takes from the system's mathematical library (`clippy.toml` denies the same by type).
 const SYSTEM: [&str; 27] = [
@@ -43,16 +31,16 @@ fn elementary_functions_and_draws_are_not_the_systems() {
     for other in ["libm::sin(x)", "self.log.moments", "x.log_det()", "// x.sin()", "f64::consts"] {
         assert!(!calls_the_system(other), "{other}");
     }
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut found = Vec::new();
-    for folder in ["crates", "src", "lab/src", "python/src", "tests/analytic/src"] {
-        sources(&root.join(folder), &mut |path, text| {
-            // Its numbers take the system's logarithm; `normal.rs` rounds them.
-            let drawn = text.contains("rand_distr::") && !path.ends_with("ask-tell/src/normal.rs");
-            found.extend(drawn.then(|| format!("{}: rand_distr", path.display())));
-            let lines = text.lines().enumerate().filter(|(_, line)| calls_the_system(line));
-            found.extend(lines.map(|(i, line)| format!("{}:{}: {line}", path.display(), i + 1)));
-        });
+    let folders = ["crates", "src", "lab/src", "python/src", "tests/analytic/src"];
+    let sources = folders.iter().flat_map(|folder| files(&root(folder)));
+    for path in sources.filter(|path| path.extension().is_some_and(|ending| ending == "rs")) {
+        let text = read(&path);
+        // Its numbers take the system's logarithm; `normal.rs` rounds them.
+        let drawn = text.contains("rand_distr::") && !path.ends_with("ask-tell/src/normal.rs");
+        found.extend(drawn.then(|| format!("{}: rand_distr", path.display())));
+        let lines = text.lines().enumerate().filter(|(_, line)| calls_the_system(line));
+        found.extend(lines.map(|(i, line)| format!("{}:{}: {line}", path.display(), i + 1)));
     }
     assert_eq!(found, Vec::<String>::new(), "use libm, or ask_tell::normal");
 }

@@ -94,9 +94,8 @@ fn every_optimizer_asks_distinct_points_within_the_bounds_in_both_directions_ali
             for (i, point) in points.iter().enumerate() {
                 assert_eq!(point["id"], json!(4 * round + i));
                 assert!((-5.0..=5.0).contains(&point["values"]["x"].as_f64().unwrap()));
-                assert!(
-                    [1.0, 3.0, 5.0, 7.0, 9.0].contains(&point["values"]["n"].as_f64().unwrap())
-                );
+                let n = point["values"]["n"].as_f64().unwrap();
+                assert!([1.0, 3.0, 5.0, 7.0, 9.0].contains(&n));
                 assert!(!seen.contains(&point["values"]), "{name}: {point}");
                 seen.push(point["values"].clone());
             }
@@ -227,23 +226,16 @@ fn what_is_known_can_be_told_and_is_not_asked_again() {
         let mut talk = Talk::begin(&header);
         let known = |x: i32, n: i32| json!({"values": {"x": x, "n": n}, "value": x * x + n});
         let answer = talk.answer(&json!({"tell": [known(0, 3), known(1, 5)]}));
-        assert_eq!(
-            answer["best"],
-            json!({"id": null, "values": {"x": 0.0, "n": 3.0}, "value": 3.0})
-        );
+        let best = json!({"id": null, "values": {"x": 0.0, "n": 3.0}, "value": 3.0});
+        assert_eq!(answer["best"], best);
+        let at = |values: &str| format!(r#"{{"values":{values},"value":1}}"#);
         for (told, part) in [
-            (r#"{"values":{"x":0,"n":3},"value":1}"#, "told twice"),
-            (r#"{"values":{"x":0},"value":1}"#, "`n` is missing"),
-            (
-                r#"{"values":{"x":0.5,"n":1},"value":1}"#,
-                "`x` is 0.5; accepted: -5 to 5 in steps of 1",
-            ),
-            (
-                r#"{"values":{"x":0,"n":1,"m":1},"value":1}"#,
-                "unknown parameter `m`; accepted: x, n",
-            ),
-            (r#"{"values":{"x":0,"n":1}}"#, "value"),
-            ("[0,1.5]", "must be an object"),
+            (at(r#"{"x":0,"n":3}"#), "told twice"),
+            (at(r#"{"x":0}"#), "`n` is missing"),
+            (at(r#"{"x":0.5,"n":1}"#), "`x` is 0.5; accepted: -5 to 5 in steps of 1"),
+            (at(r#"{"x":0,"n":1,"m":1}"#), "unknown parameter `m`; accepted: x, n"),
+            (r#"{"values":{"x":0,"n":1}}"#.to_owned(), "value"),
+            ("[0,1.5]".to_owned(), "must be an object"),
         ] {
             talk.error(&format!("{{\"tell\":[{told}]}}"), part);
         }

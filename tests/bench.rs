@@ -1,6 +1,6 @@
 //! The commands that bring bench and simulation together, on the fake engine.
 
-use crate::common::{Studies, command, optimize, optimize_line, run};
+use crate::common::{FEW, HEAD, Studies, command, fake, optimize, optimize_line, run};
 
 #[test]
 fn measurements_are_added_checked_and_refused() {
@@ -27,19 +27,15 @@ fn measurements_are_added_checked_and_refused() {
 fn an_evaluation_shows_what_was_measured_and_warns_where_it_is_far_off() {
     let folder = Studies::new();
     let lines = "usb,20,10,0.1\nusb,20,20,3\nket8,20,10,7\nusb,20,30,not measurable\n";
-    let head = "task,infill_density_percent,infill_direction_deg,range_mm\n";
-    let file = folder.file("bench.csv", format!("{head}{lines}"));
+    let file = folder.file("bench.csv", format!("{HEAD}{lines}"));
     let of = |direction: u32, more: &str| {
-        let finger = format!("--task usb --density 20 --direction {direction} --engine fake");
-        optimize_line(&format!("evaluate {finger} --measurements {file} {more}"))
+        let finger = format!("--task usb --density 20 --direction {direction}");
+        fake(&format!("evaluate {finger} --measurements {file} {more}"))
     };
     let found = of(10, "--json").json();
     assert_eq!(found["measured"].as_array().map(Vec::len), Some(1), "{found}");
     assert_eq!(found["measured"][0]["range_mm"], 0.1);
-    let far = of(10, "");
-    assert!(
-        far.succeeds().contains("measured      0.1 mm on the bench\nwarning       do not trust")
-    );
+    of(10, "").says(&["measured      0.1 mm on the bench\nwarning       do not trust"]);
     assert!(!of(30, "").succeeds().contains("measured  "));
 }
 
@@ -89,12 +85,8 @@ fn a_strategy_is_advised_for_a_printed_finger_without_a_print() {
     assert!(prints.iter().any(|print| !needs(print)), "{found}");
     assert!(prints.iter().filter(|print| !needs(print)).all(own), "{found}");
     let words = format!("next {few} {file} --space codesign --count 20").replace("--json ", "");
-    assert!(optimize_line(&words).succeeds().contains("no print: this finger was printed"));
+    optimize_line(&words).says(&["no print: this finger was printed"]);
 }
-
-const HEAD: &str = "task,infill_density_percent,infill_direction_deg,range_mm\n";
-/// Options that make a prediction quick.
-const FEW: [&str; 6] = ["--task", "ket8", "--simulations", "24", "--samples", "20"];
 
 #[test]
 fn a_study_with_measurements_leads_with_the_finger_that_is_best_on_the_bench() {
@@ -113,10 +105,8 @@ fn a_study_with_measurements_leads_with_the_finger_that_is_best_on_the_bench() {
     let first = rows.max_by(|a, b| number(a[3]).total_cmp(&number(b[3]))).expect("a line");
     assert!((number(first[3]) - best["bench"]["range_mm"].as_f64().unwrap()).abs() < 1e-3);
     // Printed and measured before, it is not to be printed again.
-    assert_eq!(
-        (&found["answer"]["verdict"], &found["answer"]["finger"]),
-        (&"print".into(), &best["values"])
-    );
+    assert_eq!(found["answer"]["verdict"], "print");
+    assert_eq!(found["answer"]["finger"], best["values"]);
     let kept = folder.read("a/bench.json");
     let mut known: serde_json::Value = serde_json::from_str(&kept).expect("JSON");
     known["ranges"] = serde_json::json!([[best["values"], 9.9]]);
@@ -144,8 +134,7 @@ fn a_study_with_measurements_leads_with_the_finger_that_is_best_on_the_bench() {
     assert!(places[0].is_some() && places[0] < places[1], "{places:?}");
     assert!(!folder.read("b/report.html").contains("for the bench</h2>"));
     let plain = folder.study("b", 12, &["--task", "ket8", "--verbose"]);
-    let order = "our validation ranked 11 printed fingers with Spearman";
-    assert!(plain.succeeds().contains(order), "{}", plain.stdout);
+    plain.says(&["our validation ranked 11 printed fingers with Spearman"]);
 }
 
 #[test]
@@ -192,8 +181,7 @@ fn measurements_are_kept_with_a_study_and_new_ones_leave_its_evaluations() {
     assert!(folder.read("a/report.html").contains("Predicted for the bench"));
     let title = optimize(&["export", "finger", &dir, "--format", "dxf", "--out", "/dev/null"]);
     let density = after["recommended"]["values"]["infill_density_percent"].to_string();
-    let density = format!("{} %", density.trim_end_matches(".0"));
-    assert!(title.succeeds().contains(&density), "{}", title.stdout);
+    title.says(&[&format!("{} %", density.trim_end_matches(".0"))]);
 }
 
 #[test]
@@ -219,10 +207,7 @@ fn measurements_that_a_study_cannot_use_are_refused_before_it_begins() {
 fn a_finger_of_a_task_of_ones_own_is_measured_without_naming_it_twice() {
     let folder = Studies::new();
     let few = "--engine fake --simulations 24 --samples 20 --measurements";
-    let line = |line: &str| {
-        let words: Vec<&str> = line.split_whitespace().collect();
-        run(command(&words).current_dir(folder.0.path()))
-    };
+    let line = |line: &str| run(command(&[]).args(line.split_whitespace()).current_dir(&folder.0));
     // A file that is not there is empty for `next` alone.
     let next = line(&format!("next --task ket8 {few} bench.csv"));
     let words = "ket8: nothing measured yet (bench.csv does not exist); by simulation alone\n";

@@ -1,7 +1,6 @@
 //! `--cell`: a cell's robot and numbers in every command that takes a task.
 
 use crate::common::{Studies, optimize_line};
-use input::shipped::ROBOTS;
 use serde_json::json;
 
 /// A row of a cell file.
@@ -14,7 +13,7 @@ fn row(name: &str, sets: &str, way: &str, numbers: &str, shared: bool) -> String
 
 /// The file of a cell with the robot `servo` and these rows.
 fn cell(rows: &str) -> String {
-    let servo = ROBOTS.iter().find(|robot| robot.name == "servo").unwrap().text;
+    let servo = include_str!("../robots/servo.toml");
     format!("name = \"mine\"\ndescription = \"made up\"\ntask = \"usb\"\n[robot]\n{servo}\n{rows}")
 }
 
@@ -80,10 +79,8 @@ fn a_nominal_cell_changes_nothing_and_a_row_is_as_if_set() {
         (format!("{TRIAL} usb --cell {rough}"), format!("{TRIAL} usb {set}=0.4"));
     assert_eq!(printed(&in_cell), printed(&as_set));
     assert_ne!(printed(&in_cell), printed(&format!("{TRIAL} usb")));
-    assert_eq!(
-        printed(&format!("{in_cell} {set}=0.3")),
-        printed(&format!("{TRIAL} usb {set}=0.3"))
-    );
+    let smooth = printed(&format!("{in_cell} {set}=0.3"));
+    assert_eq!(smooth, printed(&format!("{TRIAL} usb {set}=0.3")));
     // A row that is usb's alone.
     assert_eq!(printed(&format!("{TRIAL} ket8 --cell {rough}")), printed(&format!("{TRIAL} ket8")));
 }

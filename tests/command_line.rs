@@ -1,12 +1,7 @@
 //! The command line: output, exit codes, and what is said of bad input.
 
-use crate::common::{Ran, Studies, optimize, optimize_line};
+use crate::common::{Studies, command, fake, optimize, optimize_line, run};
 use std::fs;
-
-/// Runs a command line, without spaces in its words, on the fake engine.
-fn fake(line: &str) -> Ran {
-    optimize_line(&format!("{line} --engine fake"))
-}
 
 /// An evaluation and a trial of a finger.
 const EVALUATE: &str = "evaluate --task usb --density 20 --direction 10 --json";
@@ -44,20 +39,16 @@ fn a_trial_prints_the_promised_keys() {
 
 #[test]
 fn everything_prints_as_text_too() {
-    for (ran, part) in [
-        (fake("evaluate --task usb --density 20 --direction 10"), "window"),
-        (fake(TRIAL), "inserted"),
-        (optimize_line("stiffness"), "N/mm"),
-        (optimize_line("--help"), "--budget"),
-    ] {
-        assert!(ran.succeeds().contains(part), "{}", ran.stdout);
-    }
-    for name in ["ket8", "ket12", "rj45", "usb", "infill", "\n  typical"] {
-        assert!(optimize_line("tasks").succeeds().contains(name), "{name}");
-    }
-    assert!(!optimize_line("tasks").succeeds().contains("ur5e"), "one place lists robots");
+    fake("evaluate --task usb --density 20 --direction 10").says(&["window"]);
+    fake(TRIAL).says(&["inserted"]);
+    optimize_line("stiffness").says(&["N/mm"]);
+    let tasks = optimize_line("tasks");
+    tasks.says(&["ket8", "ket12", "rj45", "usb", "infill", "\n  typical"]);
+    assert!(!tasks.stdout.contains("ur5e"), "one place lists robots");
     assert!(optimize_line("stiffness --json").json()["models"].is_array());
-    assert!(!optimize_line("--help").succeeds().contains("fake"));
+    let help = optimize_line("--help");
+    help.says(&["--budget", "Example: optimize --task usb --budget 200"]);
+    assert!(!help.stdout.contains("fake"));
 }
 
 #[test]
@@ -108,10 +99,8 @@ fn a_study_prints_its_best_design_and_leaves_a_table() {
     assert!(result["best"]["range_mm"].as_f64() > Some(3.0), "{result}");
     let table = studies.read("s/evaluations.csv");
     assert_eq!(table.lines().count(), 1 + 8);
-    let text = studies.study("s", 8, &["--verbose"]);
-    for part in ["print", "next", "best design", "range", "window", "stiffness", "study"] {
-        assert!(text.succeeds().contains(part), "{part} is not in {}", text.stdout);
-    }
+    let parts = ["print", "next", "best design", "range", "window", "stiffness", "study"];
+    studies.study("s", 8, &["--verbose"]).says(&parts);
     for file in ["evaluations.csv", "convergence.svg", "report.html"] {
         fs::remove_file(studies.dir("s").join(file)).expect(file);
     }
@@ -137,21 +126,18 @@ fn a_force_that_the_connector_does_not_withstand_comes_first() {
         studies.study("weak", 30, &["--task", &studies.word("weak.toml"), "--json"]).json();
     assert_eq!(answer["answer"]["force"]["limit_n"], 6.5);
     assert!(studies.read("weak/report.html").contains("Force: up to"));
-    assert!(
-        study("strong", 60.0).starts_with("Print ") || study("strong", 60.0).starts_with("Any ")
-    );
+    let strong = study("strong", 60.0);
+    assert!(strong.starts_with("Print ") || strong.starts_with("Any "), "{strong}");
     // A robot that stops near that force.
     let robot =
         include_str!("../robots/servo.toml").replace("stop_force_n = 150.0", "stop_force_n = 7.0");
     let robot = studies.file("robot.toml", robot);
     let stops = studies.study("stops", 30, &["--robot", &robot, "--no-levers", "--no-map"]);
-    assert!(stops.succeeds().contains("of the 7 N at which"), "{}", stops.stdout);
-    let finger = "--density 20 --direction 10 --engine fake";
-    let of = |robot: &str| optimize_line(&format!("evaluate --task usb {finger} --robot {robot}"));
-    let (weak, strong) = (of(&robot), of("servo"));
-    let remark = "above the limit of connector or robot, 7 N";
-    assert!(weak.succeeds().contains(remark), "{}", weak.stdout);
-    assert!(!strong.succeeds().contains("above the limit"), "{}", strong.stdout);
+    stops.says(&["of the 7 N at which"]);
+    let evaluate = "evaluate --task usb --density 20 --direction 10 --robot";
+    let of = |robot: &str| fake(&format!("{evaluate} {robot}"));
+    of(&robot).says(&["above the limit of connector or robot, 7 N"]);
+    assert!(!of("servo").succeeds().contains("above the limit"));
     // With a wide indifference some design keeps to the limit, and the safe choice is such a one.
     study("middling", 8.25);
     let task = studies.word("middling.toml");
@@ -168,10 +154,8 @@ fn a_force_that_the_connector_does_not_withstand_comes_first() {
 #[test]
 fn the_short_help_is_a_screen_and_the_long_one_has_every_option_below_a_heading() {
     let short = optimize_line("-h").succeeds().to_owned();
-    assert!(
-        short.lines().count() < 50 && short.lines().all(|line| line.chars().count() <= 80),
-        "{short}"
-    );
+    assert!(short.lines().count() < 50, "{short}");
+    assert!(short.lines().all(|line| line.chars().count() <= 80), "{short}");
     let titles = ["Study:", "Design:", "Connector:", "Bench:", "Files:"];
     assert!(titles.iter().all(|title| short.contains(&format!("\n{title}\n"))), "{short}");
     for command in finger_opt::commands::COMMANDS {
@@ -179,22 +163,9 @@ fn the_short_help_is_a_screen_and_the_long_one_has_every_option_below_a_heading(
     }
     let long = optimize_line("study --help").succeeds().to_owned();
     let (_, headed) = long.split_once("\nTask, robot and finger:\n").expect("a heading");
-    assert!(
-        ["\nSearch:\n", "\nBench:\n", "\nRun:\n", "\nOutput:\n"]
-            .iter()
-            .all(|title| headed.contains(title))
-    );
+    let titles = ["\nSearch:\n", "\nBench:\n", "\nRun:\n", "\nOutput:\n"];
+    assert!(titles.iter().all(|title| headed.contains(title)), "{headed}");
     assert!(!headed.contains("\nOptions:\n") && headed.contains("--budget"), "{long}");
-    for (line, near) in [
-        ("--task usb --executor slrum", "did you mean `slurm`"),
-        ("--task usb --objective rnage", "did you mean `range`"),
-        ("--task usb --optimizer cmaes", "did you mean `cma-es`"),
-        ("--task usb --engine direkt", "'direct'"),
-        ("--task usb --robot servp", "did you mean `servo`"),
-        ("export finger --format stk --out f.stl", "'stl'"),
-    ] {
-        optimize_line(line).fails(2, &[near]);
-    }
 }
 
 #[test]
@@ -203,8 +174,7 @@ fn the_project_file_gives_defaults_that_options_precede() {
     let folder = |name: &str| studies.dir(name);
     fs::create_dir_all(folder("lab/below")).expect("a folder");
     let lines = |below: &str, line: &str| {
-        let mut command = crate::common::command(&line.split_whitespace().collect::<Vec<_>>());
-        crate::common::run(command.current_dir(folder(below)))
+        run(command(&[]).args(line.split_whitespace()).current_dir(folder(below)))
     };
     studies.file(
         "lab/finger-opt.toml",
@@ -214,50 +184,29 @@ fn the_project_file_gives_defaults_that_options_precede() {
     // Cell and measurements are not there yet.
     let found = lines("lab", study);
     assert_eq!((&found.json()["task"], &found.json()["robot"]), (&"usb".into(), &"rigid".into()));
-    let first = found.stderr.lines().next().unwrap_or_default();
-    assert_eq!(first, "finger-opt.toml sets task usb, robot rigid");
+    let sets = "finger-opt.toml sets task usb, robot rigid";
+    assert_eq!(found.stderr.lines().next(), Some(sets));
     let recorded = studies.read("lab/s/study.toml");
-    assert!(
-        recorded.contains("project = \"finger-opt.toml sets task usb, robot rigid\""),
-        "{recorded}"
-    );
+    assert!(recorded.contains(&format!("project = \"{sets}\"")), "{recorded}");
     // An option precedes the file, which is found from below, and can be ignored.
-    let other = lines(
-        "lab/below",
-        "--engine fake --budget 4 --no-levers --no-map --json --robot servo --out s",
-    );
+    let other = lines("lab/below", &format!("{study} --robot servo"));
     assert_eq!(other.json()["robot"], "servo");
     assert!(other.stderr.contains("lab/finger-opt.toml sets task usb"), "{}", other.stderr);
     lines("lab", "evaluate --no-config --density 20 --direction 10").fails(2, &["--task"]);
-    let config = lines("lab/below", "config").succeeds().to_owned();
-    assert!(
-        config.contains("rigid") && config.contains("infill") && config.contains("(default)"),
-        "{config}"
-    );
+    lines("lab/below", "config").says(&["rigid", "infill", "(default)"]);
     // `measure add` and `measure check` take the file of the measurements.
     let window = "measure add --density 10 --direction 6 --negative-mm -4.1 --positive-mm 5.2";
     lines("lab", &format!("{window} --failure-negative 4 --failure-positive 3")).succeeds();
-    assert!(
-        studies.read("lab/bench.csv").contains("usb,10,6"),
-        "{}",
-        studies.read("lab/bench.csv")
-    );
+    let bench = studies.read("lab/bench.csv");
+    assert!(bench.contains("usb,10,6"), "{bench}");
     lines("lab", "measure check").succeeds();
     // With an identified cell, which contains a robot.
     studies.file("lab/cell.toml", include_str!("fixtures/v0.5.0/cell.toml"));
-    let cell = lines("lab", "evaluate --engine fake --density 20 --direction 10");
-    assert!(
-        cell.stderr
-            .starts_with("finger-opt.toml sets task usb, cell cell.toml, measurements bench.csv\n"),
-        "{}",
-        cell.stderr
-    );
-    let bench = lines("lab", "next --engine fake --no-cache --simulations 16 --samples 20");
-    assert!(
-        bench.stderr.contains("sets task usb, priors cell.toml, measurements bench.csv"),
-        "{}",
-        bench.stderr
-    );
+    let cell = lines("lab", "evaluate --engine fake --density 20 --direction 10").stderr;
+    let sets = "finger-opt.toml sets task usb, cell cell.toml, measurements bench.csv";
+    assert_eq!(cell.lines().next(), Some(sets));
+    let next = lines("lab", "next --engine fake --no-cache --simulations 16 --samples 20").stderr;
+    assert!(next.contains("sets task usb, priors cell.toml, measurements bench.csv"), "{next}");
     studies.file("lab/finger-opt.toml", "seed = 3\n");
     lines("lab", "config")
         .fails(2, &["finger-opt.toml", "seed: belongs to one study; give --seed"]);
@@ -270,8 +219,7 @@ fn the_project_file_gives_defaults_that_options_precede() {
 #[test]
 fn progress_goes_to_standard_error_unless_quiet() {
     let studies = Studies::new();
-    let dir = studies.dir("s");
-    let loud = fake(&format!("--task usb --budget 8 --json --out {}", dir.display()));
+    let loud = fake(&format!("--task usb --budget 8 --json --out {}", studies.word("s")));
     assert!(loud.stderr.contains("8/8 evaluations, best "), "{}", loud.stderr);
     assert_eq!(loud.json()["evaluations"], 8);
     assert_eq!(studies.study("quiet", 8, &[]).stderr, "");
@@ -292,6 +240,9 @@ fn bad_usage_is_answered_with_2_and_what_would_be_right() {
         ("--task usb --budget 5 --constraint peak-forc<=3", &["did you mean `peak-force`"]),
         ("--task usb --budget 5 --engine drect", &["'direct'"]),
         ("export finger --format stk --out f.stl", &["'stl'"]),
+        ("--task usb --executor slrum", &["did you mean `slurm`"]),
+        ("--task usb --objective rnage", &["did you mean `range`"]),
+        ("--task usb --optimizer cmaes", &["did you mean `cma-es`"]),
         ("--task usbb --budget 5", &["usbb", "`usb`", "ket8, ket12, rj45, usb"]),
         ("--task usb --budget 5 --robot rigit", &["did you mean `rigid`"]),
         ("--task usb --budget 5 --space x.toml", &["x.toml", "space"]),
@@ -327,7 +278,7 @@ fn coupled_springs_are_simulated_or_refused() {
     let coupling = "[[finger.coupling]]\naxes = [\"y\", \"rx\"]\ncoefficient = 0.3";
     let task = usb_with(&studies, coupling);
     let trial = format!("trial --task {task} --density 20 --direction 10");
-    assert!(optimize_line(&trial).succeeds().contains("outcome"));
+    optimize_line(&trial).says(&["outcome"]);
     optimize_line(&format!("{trial} --engine rapier"))
         .fails(2, &["`springs -y`", "springs that couple"]);
     optimize_line(&format!("{TRIAL} --robot ur5e --engine rapier"))
@@ -336,18 +287,13 @@ fn coupled_springs_are_simulated_or_refused() {
 
 #[test]
 fn a_design_outside_the_space_is_answered_with_its_bounds() {
-    for (design, parts) in [
-        (
-            "--density 31 --direction 10",
-            ["--density 31", "density_percent must lie between 10 and"],
-        ),
-        (
-            "--density 20 --direction -1",
-            ["--direction -1", "direction_deg must lie between 0 and 40"],
-        ),
-        ("--density nan --direction 10", ["--density NaN", "must lie between 10 and 30"]),
-        ("--density inf --direction 10", ["--density inf", "between 10 and 30"]),
+    for ([density, direction], parts) in [
+        (["31", "10"], ["--density 31", "density_percent must lie between 10 and"]),
+        (["20", "-1"], ["--direction -1", "direction_deg must lie between 0 and 40"]),
+        (["nan", "10"], ["--density NaN", "must lie between 10 and 30"]),
+        (["inf", "10"], ["--density inf", "between 10 and 30"]),
     ] {
+        let design = format!("--density {density} --direction {direction}");
         fake(&format!("evaluate --task usb {design}")).fails(2, &parts);
         fake(&format!("trial --task usb {design}")).fails(2, &parts);
     }
@@ -399,9 +345,7 @@ fn a_number_of_task_or_finger_can_be_set() {
     assert!((range(set).as_f64().unwrap() - as_in_the_paper - 0.5).abs() < 1e-9);
     let shown = fake(&format!("{EVALUATE} {set}")).json();
     assert_eq!(shown["set"], serde_json::json!({"finger.rcc_mm": 16.0, "task.grip.force_n": 7.0}));
-    let text = fake(&format!("{TRIAL} {set}"));
-    let design = "design        rcc 16 mm, infill density 20 %";
-    assert!(text.succeeds().contains(design), "{}", text.stdout);
+    fake(&format!("{TRIAL} {set}")).says(&["design        rcc 16 mm, infill density 20 %"]);
     // A key that the space does not name has no bounds but those of the task.
     assert!((range("--set finger.rcc_mm=1").as_f64().unwrap() - as_in_the_paper) > 1.9);
     for (set, parts) in [
@@ -437,19 +381,13 @@ fn a_co_design_study_names_its_parameters_everywhere() {
         }
     }
     // On the terminal by what they are, with their units.
-    for label in ["% infill at", "rcc", "tilt", "side move y", "touch preload", "force"] {
-        assert!(text.succeeds().contains(label), "{label} is not in {}", text.stdout);
-    }
+    text.says(&["% infill at", "rcc", "tilt", "side move y", "touch preload", "force"]);
     // The remote centre matters to the closed form, so equal infill is not enough.
-    let header: Vec<&str> = table.lines().next().unwrap().split(',').collect();
-    let column = |row: &str, key| {
-        let at = header.iter().position(|name| *name == key).unwrap();
-        row.split(',').nth(at).unwrap().parse::<f64>().unwrap()
-    };
-    for row in table.lines().skip(1) {
-        let assembly = column(row, "stiffness_assembly_n_per_mm");
-        let end = 1.0 + assembly / 50.0 + (21.0 - column(row, "finger.rcc_mm")) / 10.0;
-        assert!((column(row, "positive_mm") - end).abs() < 0.101, "{row}");
+    let [assembly, rcc, positive] = ["stiffness_assembly_n_per_mm", "finger.rcc_mm", "positive_mm"]
+        .map(|key| studies.numbers("s", key));
+    for i in 0..8 {
+        let end = 1.0 + assembly[i] / 50.0 + (21.0 - rcc[i]) / 10.0;
+        assert!((positive[i] - end).abs() < 0.101, "{i}: {} and {end} mm", positive[i]);
     }
     studies.resume("s").succeeds();
     assert_eq!(studies.journal("s"), journal);
@@ -469,17 +407,13 @@ fn a_scene_is_exported_for_mujoco_and_the_arm_is_refused() {
 
 #[test]
 fn every_help_shows_an_example_and_the_shell_and_man_are_served() {
-    let help = optimize_line("--help");
-    assert!(help.succeeds().contains("Example: optimize --task usb --budget 200"));
     let commands = "resume finger report evaluate trial stiffness compare sensitivity export ask-tell \
                     tasks completions man";
     for command in commands.split(' ') {
-        let help = optimize(&[command, "--help"]);
-        let example = format!("Example: optimize {command}");
-        assert!(help.succeeds().contains(&example), "{command}: {}", help.stdout);
+        optimize(&[command, "--help"]).says(&[&format!("Example: optimize {command}")]);
     }
     for shell in ["bash", "zsh", "fish"] {
-        assert!(optimize(&["completions", shell]).succeeds().contains("optimize"), "{shell}");
+        optimize(&["completions", shell]).says(&["optimize"]);
     }
     assert!(optimize(&["man"]).succeeds().starts_with(".ie"));
     let number = format!("optimize {} (", env!("CARGO_PKG_VERSION"));
@@ -528,7 +462,7 @@ fn a_finger_is_computed_from_its_ribs() {
     optimize_line(&format!("{drawn} --load-n 0,20")).succeeds();
     assert!(studies.read("finger.svg").contains("20.0 N in z"));
     optimize_line(&format!("{infill} --load-n 5")).fails(2, &["--load-n", "for example -5,0"]);
-    assert!(optimize_line(infill).succeeds().contains("pad and roof"));
+    optimize_line(infill).says(&["pad and roof"]);
     optimize_line("finger --density 120 --direction 0")
         .fails(2, &["--density: is 120", "1 .. 100"]);
     optimize_line(&format!("{infill} --finger finray")).fails(2, &["did you mean `finray9`"]);
@@ -640,6 +574,5 @@ fn an_evaluation_gives_the_widths_of_the_unsure_bands() {
     assert_eq!(json["bands"]["unsure_inside_mm"], serde_json::json!([]));
     let firm = json["bands"]["firm_negative_mm"].as_f64().expect("an end");
     assert!(json["negative_mm"].as_f64().expect("an end") <= firm && firm < 0.0, "{json}");
-    let text = optimize_line(&evaluate);
-    assert!(text.succeeds().contains("unsure bands"), "{}", text.stdout);
+    optimize_line(&evaluate).says(&["unsure bands"]);
 }

@@ -1,7 +1,6 @@
 //! Connectors as they are drawn: several bodies, thin walls, mates in axes of their own.
 
 use crate::common::{Ran, Studies, optimize};
-use std::fmt::Write;
 
 /// Box: least and greatest corner, mm.
 type Block = [[f64; 3]; 2];
@@ -13,6 +12,12 @@ fn block(x: [f64; 2], y: [f64; 2], z: [f64; 2]) -> Block {
 /// Text STL of boxes that may touch, so that it has films between them; each axis goes to the place `to` says.
 fn stl(blocks: &[Block], to: [usize; 3]) -> String {
     solid("part", blocks, to)
+}
+
+/// A triangle of such a file.
+fn facet(corners: [[f64; 3]; 3]) -> String {
+    let vertex = |[x, y, z]: [f64; 3]| format!("vertex {x} {y} {z}\n");
+    format!("facet normal 0 0 0\nouter loop\n{}endloop\nendfacet\n", corners.map(vertex).concat())
 }
 
 /// A `solid` of such a file.
@@ -27,13 +32,8 @@ fn solid(name: &str, blocks: &[Block], to: [usize; 3]) -> String {
             place
         };
         for [a, b, c, d] in SIDES {
-            for face in [[a, b, c], [a, c, d]] {
-                text += "facet normal 0 0 0\nouter loop\n";
-                for [x, y, z] in face.map(corner) {
-                    writeln!(text, "vertex {x} {y} {z}").unwrap();
-                }
-                text += "endloop\nendfacet\n";
-            }
+            text += &facet([a, b, c].map(corner));
+            text += &facet([a, c, d].map(corner));
         }
     }
     text + &format!("endsolid {name}\n")
@@ -158,11 +158,7 @@ fn finer(stl: &str, times: usize) -> String {
             let other = (i + j + 1 < times).then(|| [at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)]);
             for face in [Some([at(i, j), at(i + 1, j), at(i, j + 1)]), other].into_iter().flatten()
             {
-                text += "facet normal 0 0 0\nouter loop\n";
-                for [x, y, z] in face {
-                    writeln!(text, "vertex {x:.6} {y:.6} {z:.6}").unwrap();
-                }
-                text += "endloop\nendfacet\n";
+                text += &facet(face.map(|corner| corner.map(|v| (v * 1e6).round() / 1e6)));
             }
         }
     }
@@ -226,14 +222,17 @@ fn random(number: u64) -> ([Vec<Block>; 2], [f64; 2]) {
     ([plug, socket], clearance)
 }
 
-/// Imports a pair of which the plug lies on its side, and returns what the program says.
-fn imported(folder: &Studies, name: &str, [plug, socket]: [Vec<Block>; 2]) -> Ran {
-    let [plug_file, socket_file] = ["plug", "socket"].map(|part| format!("{name}-{part}.stl"));
-    folder.file(&plug_file, stl(&plug, [1, 2, 0]));
-    folder.file(&socket_file, stl(&socket, [0, 1, 2]));
-    let [plug, socket, out] =
-        [plug_file, socket_file, format!("{name}.toml")].map(|file| folder.word(&file));
+/// Imports a pair of text STL files, and returns what the program says.
+fn import(folder: &Studies, name: &str, [plug, socket]: [&str; 2]) -> Ran {
+    let [plug, socket] = [("plug", plug), ("socket", socket)]
+        .map(|(part, text)| folder.file(&format!("{name}-{part}.stl"), text));
+    let out = folder.word(&format!("{name}.toml"));
     optimize(&["task", "import", "--plug", &plug, "--socket", &socket, "--out", &out, "--json"])
+}
+
+/// The same of a pair of which the plug lies on its side.
+fn imported(folder: &Studies, name: &str, [plug, socket]: [Vec<Block>; 2]) -> Ran {
+    import(folder, name, [&stl(&plug, [1, 2, 0]), &stl(&socket, [0, 1, 2])])
 }
 
 /// Outcome of a trial with an offset, mm.
@@ -248,13 +247,8 @@ fn outcome(folder: &Studies, name: &str, offset_mm: &str) -> String {
 #[test]
 fn a_header_inserts_and_misses_by_one_pitch() {
     let folder = Studies::new();
-    let found = imported(&folder, "header", header()).json();
-    assert_eq!(found["check"]["nominal"]["outcome"], "inserted", "{found}");
-    assert_eq!(found["left_out"], serde_json::json!([]));
     // 0.2 mm in the shroud, 0.26 mm about the pins.
-    for axis in ["clearance_x_mm", "clearance_y_mm"] {
-        assert!((found[axis].as_f64().unwrap() - 0.2).abs() < 0.03, "{found}");
-    }
+    inserts(&folder, "header", header(), [0.2, 0.2]);
     assert_eq!(outcome(&folder, "header", "0"), "inserted");
     assert_ne!(outcome(&folder, "header", "2.54"), "inserted");
     assert_ne!(outcome(&folder, "header", "-2.54"), "inserted");
@@ -267,12 +261,7 @@ fn a_header_inserts_and_misses_by_one_pitch() {
 
 #[test]
 fn a_shell_with_a_seam_goes_about_its_tongue() {
-    let folder = Studies::new();
-    let found = imported(&folder, "shell", shell()).json();
-    assert_eq!(found["check"]["nominal"]["outcome"], "inserted", "{found}");
-    assert_eq!(found["left_out"], serde_json::json!([]));
-    let near = |key: &str, mm: f64| (found[key].as_f64().unwrap() - mm).abs() < 0.03;
-    assert!(near("clearance_x_mm", 0.1) && near("clearance_y_mm", 0.1), "{found}");
+    inserts(&Studies::new(), "shell", shell(), [0.1, 0.1]);
 }
 
 /// File of bodies that are called by their number, from 1.
@@ -286,27 +275,36 @@ fn in_task(found: &serde_json::Value, [x, y]: [f64; 2]) -> [(&'static str, f64);
     [("clearance_x_mm", if turned { y } else { x }), ("clearance_y_mm", if turned { x } else { y })]
 }
 
-/// Asserts that a pair inserts, and its clearance in x and in y, mm, nothing of it left out.
-fn inserts(name: &str, pair: [Vec<Block>; 2], clearance_mm: [f64; 2]) -> serde_json::Value {
-    let folder = Studies::new();
-    let found = imported(&folder, name, pair).json();
+/// Asserts a pair's clearance in x and in y, mm.
+fn assert_clearance(found: &serde_json::Value, clearance_mm: [f64; 2]) {
+    for (axis, clearance) in in_task(found, clearance_mm) {
+        let play = found[axis].as_f64().unwrap();
+        assert!((play - clearance).abs() < 0.03, "{axis} {clearance} {found}");
+    }
+}
+
+/// Asserts that a pair inserts, and its clearance, nothing of it left out.
+fn inserts(
+    folder: &Studies,
+    name: &str,
+    pair: [Vec<Block>; 2],
+    clearance_mm: [f64; 2],
+) -> serde_json::Value {
+    let found = imported(folder, name, pair).json();
     assert_eq!(found["check"]["nominal"]["outcome"], "inserted", "{name}: {found}");
     assert_eq!(found["left_out"], serde_json::json!([]), "{name}");
-    for (axis, clearance) in in_task(&found, clearance_mm) {
-        let play = found[axis].as_f64().unwrap();
-        assert!((play - clearance).abs() < 0.03, "{name}: {axis} {clearance} {found}");
-    }
+    assert_clearance(&found, clearance_mm);
     found
 }
 
 #[test]
 fn a_shell_with_nine_pins_goes_about_their_block() {
-    inserts("d-sub", d_sub(), [0.2, 0.2]);
+    inserts(&Studies::new(), "d-sub", d_sub(), [0.2, 0.2]);
 }
 
 #[test]
 fn a_bar_goes_through_a_plate() {
-    let found = inserts("through", through(), [0.2, 0.2]);
+    let found = inserts(&Studies::new(), "through", through(), [0.2, 0.2]);
     assert!(found["found"].to_string().contains("nothing stops the plug: 5.00 mm"), "{found}");
 }
 
@@ -315,27 +313,17 @@ fn a_bar_goes_through_a_plate() {
 fn open_and_fine_meshes_are_the_same_shape() {
     let folder = Studies::new();
     let [plug, socket] = post().map(|blocks| stl(&blocks, [0, 1, 2]));
-    let found = |name: &str, [plug, socket]: [&str; 2]| {
-        let [plug, socket] = [("plug", plug), ("socket", socket)]
-            .map(|(part, text)| folder.file(&format!("{name}-{part}.stl"), text));
-        let out = folder.word(&format!("{name}.toml"));
-        optimize(&["task", "import", "--plug", &plug, "--socket", &socket, "--out", &out, "--json"])
-            .json()
-    };
+    let found = |name: &str, pair: [&str; 2]| import(&folder, name, pair).json();
     let drawn = found("drawn", [&plug, &socket]);
-    for (axis, clearance) in in_task(&drawn, [0.16, 0.2]) {
-        let play = drawn[axis].as_f64().unwrap();
-        assert!((play - clearance).abs() < 0.03, "{axis} {clearance} {drawn}");
-    }
+    assert_clearance(&drawn, [0.16, 0.2]);
     // The last facet of the plug is one of its handle, that of the socket one of its base.
     let open = [&plug, &socket]
         .map(|text| text[..text.rfind("facet normal").unwrap()].to_owned() + "endsolid part\n");
     let open = found("open", [&open[0], &open[1]]);
     let [fine_plug, fine_socket] = [finer(&plug, 25), finer(&socket, 30)];
-    assert!(
-        fine_plug.matches("endfacet").count() + fine_socket.matches("endfacet").count() > 58_000
-    );
     let fine = found("fine", [&fine_plug, &fine_socket]);
+    let facets = [&fine_plug, &fine_socket].map(|text| text.matches("endfacet").count());
+    assert!(facets.iter().sum::<usize>() > 58_000);
     for other in [&open, &fine] {
         assert_eq!(other["check"]["nominal"]["outcome"], "inserted", "{other}");
         for key in ["clearance_x_mm", "clearance_y_mm"] {
@@ -390,8 +378,7 @@ fn an_assembly_is_taken_apart() {
     let found = optimize(&["task", "import", &file, "--out", &out, "--json"]).json();
     assert_eq!(found["check"]["nominal"]["outcome"], "inserted", "{found}");
     assert_eq!(found["insert_along"], "-x", "{found}");
-    let near = |key: &str, mm: f64| (found[key].as_f64().unwrap() - mm).abs() < 0.03;
-    assert!(near("clearance_x_mm", 0.1) && near("clearance_y_mm", 0.1), "{found}");
+    assert_clearance(&found, [0.1, 0.1]);
     let said = found["found"].to_string();
     assert!(said.contains("plug's bodies `body 4`, `body 5`;"), "{said}");
     // What is not mated cannot be withdrawn.

@@ -1,20 +1,17 @@
 //! Promises of the documents: links that lead somewhere, as many words as a person reads, and
 //! every command.
 
+use crate::common::{files, read, root};
 use finger_opt::commands::COMMANDS;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::Command;
-
-fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-}
 
 /// The pages in a folder, with their texts.
 fn pages(folder: &str) -> Vec<(PathBuf, String)> {
-    let entries = std::fs::read_dir(root().join(folder)).unwrap();
+    let entries = std::fs::read_dir(root(folder)).unwrap();
     let paths = entries.map(|entry| entry.unwrap().path());
     let pages = paths.filter(|path| path.extension().is_some_and(|extension| extension == "md"));
-    pages.map(|path| (path.clone(), std::fs::read_to_string(path).unwrap())).collect()
+    pages.map(|path| (path.clone(), read(&path))).collect()
 }
 
 fn words(pages: &[(PathBuf, String)]) -> usize {
@@ -44,8 +41,7 @@ fn every_link_leads_to_a_file() {
 
 #[test]
 fn the_documents_can_be_read_in_an_evening() {
-    let readme = std::fs::read_to_string(root().join("README.md")).unwrap();
-    assert!(readme.split_whitespace().count() <= 900);
+    assert!(read(&root("README.md")).split_whitespace().count() <= 900);
     assert!(words(&pages("docs/guide")) <= 10_000);
     assert!(words(&pages("docs/notes")) <= 14_000);
 }
@@ -53,36 +49,30 @@ fn the_documents_can_be_read_in_an_evening() {
 #[test]
 fn changelog_and_citation_are_of_this_version() {
     let version = env!("CARGO_PKG_VERSION");
-    let changelog = std::fs::read_to_string(root().join("CHANGELOG.md")).unwrap();
+    let changelog = read(&root("CHANGELOG.md"));
     let heading = changelog.lines().find_map(|line| line.strip_prefix("## ")).unwrap();
     let (made, date) = heading.split_once(" (").unwrap_or((heading, ""));
     assert_eq!(made, version, "first section of CHANGELOG.md");
-    let citation = std::fs::read_to_string(root().join("CITATION.cff")).unwrap();
+    let citation = read(&root("CITATION.cff"));
     let released = format!("\nversion: {version}\ndate-released: {}", date.trim_end_matches(')'));
     assert!(citation.contains(&released), "CITATION.cff lacks {released}");
 }
 
 #[test]
 fn the_command_reference_is_what_the_program_says() {
-    let page = std::fs::read_to_string(root().join("docs/cli.md"));
-    let same = page
-        .is_ok_and(|text| text == finger_opt::manual::reference(finger_opt::program::program()));
+    let said = finger_opt::manual::reference(finger_opt::program::program());
+    let same = read(&root("docs/cli.md")) == said;
     assert!(same, "docs/cli.md is not what --help says: scripts/generate.py writes it");
 }
 
 #[test]
 fn every_file_of_a_command_is_in_the_list() {
-    let (root, mut found) = (root().join("src/commands"), Vec::new());
-    let mut folders = vec![root.clone()];
-    while let Some(folder) = folders.pop() {
-        for entry in std::fs::read_dir(folder).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                folders.push(path);
-            } else if path.extension().is_some_and(|ending| ending == "rs") {
-                let name = path.with_extension("").strip_prefix(&root).unwrap().to_owned();
-                found.push(name.display().to_string().replace('_', "-").replace(['/', '\\'], " "));
-            }
+    let folder = root("src/commands");
+    let mut found: Vec<String> = Vec::new();
+    for path in files(&folder) {
+        if path.extension().is_some_and(|ending| ending == "rs") {
+            let name = path.with_extension("").strip_prefix(&folder).unwrap().to_owned();
+            found.push(name.display().to_string().replace('_', "-").replace(['/', '\\'], " "));
         }
     }
     found.retain(|name| name != "mod");
@@ -95,7 +85,7 @@ fn every_file_of_a_command_is_in_the_list() {
 #[test]
 fn what_is_written_of_the_commands_is_current() {
     let mut script = Command::new("python3");
-    let script = script.arg(root().join("scripts/generate.py")).arg("--check");
+    let script = script.arg(root("scripts/generate.py")).arg("--check");
     let Ok(done) = script.arg(env!("CARGO_BIN_EXE_optimize")).output() else {
         return eprintln!("left out, for want of python3");
     };

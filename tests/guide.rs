@@ -1,13 +1,8 @@
 //! The commands of README and guide, run in their order: each page in a folder of its own, with the files that the
 //! reader has by then. Studies run on the fake engine with a small budget; all else as written.
 
-use crate::common::{Studies, command, optimize_line, read, run};
+use crate::common::{FRICTION, Studies, command, logged, read, root, run};
 use std::fs;
-use std::path::Path;
-
-fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-}
 
 /// A block of code and its language.
 struct Block {
@@ -16,7 +11,7 @@ struct Block {
 }
 
 fn blocks(page: &str) -> Vec<Block> {
-    let text = read(&root().join(page)).replace("\\\n", "");
+    let text = read(&root(page)).replace("\\\n", "");
     let mut blocks = Vec::new();
     let mut lines = text.lines();
     while let Some(line) = lines.next() {
@@ -54,9 +49,7 @@ fn follow(page: &str, folder: &Studies) -> usize {
             "sh" => {
                 printed.clear();
                 for line in block.lines.iter().filter(|line| line.starts_with("optimize ")) {
-                    let words = quick(line);
-                    let words: Vec<_> = words.iter().map(String::as_str).collect();
-                    let ran = run(command(&words).current_dir(folder.0.path()));
+                    let ran = run(command(&[]).args(quick(line)).current_dir(&folder.0));
                     assert_eq!(ran.code, Some(0), "{page}: {line}\n{}{}", ran.stdout, ran.stderr);
                     printed += &ran.stdout;
                     count += 1;
@@ -64,10 +57,7 @@ fn follow(page: &str, folder: &Studies) -> usize {
             }
             "text" if block.lines[0].starts_with("success rate") => {
                 for line in &block.lines {
-                    assert!(
-                        printed.contains(line.as_str()),
-                        "{page}: `{line}` is not in:\n{printed}"
-                    );
+                    assert!(printed.contains(line), "{page}: `{line}` is not in:\n{printed}");
                 }
             }
             _ => {}
@@ -78,7 +68,7 @@ fn follow(page: &str, folder: &Studies) -> usize {
 
 /// Copies the project's file to a name in the folder.
 fn copied(folder: &Studies, from: &str, to: &str) {
-    folder.file(to, read(&root().join(from)));
+    folder.file(to, read(&root(from)));
 }
 
 #[test]
@@ -115,15 +105,10 @@ fn tasks() {
         let name = format!("examples/meshes/{file}");
         let to = folder.dir(&name);
         fs::create_dir_all(to.parent().expect("a folder")).expect("it is made");
-        fs::copy(root().join(&name), to).expect("the mesh is copied");
+        fs::copy(root(&name), to).expect("the mesh is copied");
     }
     assert!(follow("docs/guide/tasks.md", &folder) >= 5);
 }
-
-/// One prior, so that few replays are enough.
-const FEW: &str = "name = \"few\"\ndescription = \"of a test\"\n\
-    [[parameter]]\nname = \"friction\"\nsets = \"task.friction.plug_socket\"\nas = \"factor\"\n\
-    scale = \"log\"\nlow = 0.5\nhigh = 2.0\nshared = false\nsource = \"made up\"\n";
 
 /// The logs that `measure_window` writes in the guide come from `trial` here.
 #[test]
@@ -131,26 +116,8 @@ fn measuring() {
     let folder = Studies::new();
     folder.file("finger-opt.toml", blocks("docs/guide/measuring.md").remove(0).lines.join("\n"));
     fs::create_dir(folder.dir("logs")).expect("it is made");
-    let mut runs = "log,infill_density_percent,infill_direction_deg,offset_mm,outcome\n".to_owned();
-    for (density, direction) in [(10, 6), (11, 40)] {
-        for (i, offset) in ["", "-1", "0", "1"].into_iter().enumerate() {
-            let log = format!("logs/{density}-{i}.csv");
-            let what =
-                if offset.is_empty() { "--probe".into() } else { format!("--offset-mm {offset}") };
-            let line = format!(
-                "trial --task usb --density {density} --direction {direction} {what} --json --log {}",
-                folder.word(&log)
-            );
-            let found = optimize_line(&line).json();
-            let outcome = match &found["failure"] {
-                _ if offset.is_empty() => "probe".to_owned(),
-                serde_json::Value::Null => "inserted".to_owned(),
-                class => class.to_string(),
-            };
-            runs += &format!("{log},{density},{direction},{offset},{outcome}\n");
-        }
-    }
+    let runs = logged(&folder, "logs/", [[10, 6], [11, 40]], ["", "-1", "0", "1"], "");
     folder.file("runs.csv", runs);
-    folder.file("few.toml", FEW);
+    folder.file("few.toml", FRICTION);
     assert!(follow("docs/guide/measuring.md", &folder) >= 9);
 }

@@ -2,7 +2,7 @@
 #![cfg(unix)]
 
 use crate::common::{
-    SLOW, Studies, command, end, lines, optimize, optimize_line, read, run, start,
+    SLOW, Studies, command, end, kill, lines, optimize, optimize_line, read, run, start,
 };
 use std::fs;
 use std::os::unix::fs::{FileTypeExt, MetadataExt, symlink};
@@ -160,14 +160,13 @@ fn a_journal_that_others_change_stops_the_study() {
 fn a_second_writer_is_refused_even_if_the_lock_is_removed() {
     let studies = Studies::new();
     let more = ["--optimizer", "random"];
-    let mut first = studies.begun("s", 100_000, &more, 5);
+    let first = studies.begun("s", 100_000, &more, 5);
     let owner = first.id().to_string();
     studies.study("s", 100_000, &more).fails(1, &["another process", &owner, "--out"]);
     studies.report("s").succeeds();
     fs::remove_file(studies.dir("s/.lock")).unwrap();
     studies.resume("s").fails(1, &["another process"]);
-    first.kill().unwrap();
-    first.wait().unwrap();
+    kill(first, "KILL");
     // The lock of a dead process blocks nobody. Who locks a file that is no longer there has locked
     // nothing: the second try does.
     let inode = || fs::metadata(studies.dir("s/.lock")).unwrap().ino();
@@ -176,8 +175,7 @@ fn a_second_writer_is_refused_even_if_the_lock_is_removed() {
     let mut second = start(command(&["resume", "--quiet"]).arg(studies.dir("s")));
     studies.wait_for_lines("s", done + 1, &mut second);
     assert_eq!(inode(), before);
-    second.kill().unwrap();
-    second.wait().unwrap();
+    kill(second, "KILL");
 }
 
 /// A copy of a shipped file in which the first line that begins with `key` is another.
@@ -314,6 +312,7 @@ fn no_room_for_an_output_is_a_message_and_leaves_nothing() {
     );
     let trial = "trial --task usb --density 20 --direction 10";
     let finger = "--density 20 --direction 10";
+    let new = "task new mine --engine fake";
     let calibrate = "calibrate --task usb --engine fake --simulations 16 --samples 20 --no-cache --quiet \
                      --measurements published --out";
     fs::create_dir(studies.dir("full")).unwrap();
@@ -322,12 +321,8 @@ fn no_room_for_an_output_is_a_message_and_leaves_nothing() {
     for (words, file) in [
         (calibrate.to_owned(), ""),
         (format!("measure add --task usb {finger} --range-mm 5"), "m.csv"),
-        ("task new mine --engine fake --out".to_owned(), "mine.toml"),
-        (
-            "task new mine --round 8x12 --clearance 0.1 --body 12x12x20 --engine fake --out"
-                .to_owned(),
-            "m.toml",
-        ),
+        (format!("{new} --out"), "mine.toml"),
+        (format!("{new} --round 8x12 --clearance 0.1 --body 12x12x20 --out"), "m.toml"),
         (import, "mine.toml"),
         ("task check usb --engine fake --svg".to_owned(), "t.svg"),
         (format!("export finger --format stl {finger} --out"), "f.stl"),

@@ -1,53 +1,31 @@
 //! `optimize identify`: hidden numbers, found again from the logs of their attempts.
 
-use crate::common::{Studies, optimize_line};
-use input::shipped::ROBOTS;
+use crate::common::{FRICTION, Studies, logged, optimize_line};
 use serde_json::Value;
 
-/// Priors of two numbers, so that few replays are enough.
-const FEW: &str = "name = \"few\"\ndescription = \"of a test\"\n\
-    [[parameter]]\nname = \"friction\"\nsets = \"task.friction.plug_socket\"\nas = \"factor\"\n\
-    scale = \"log\"\nlow = 0.5\nhigh = 2.0\nshared = false\nsource = \"made up\"\n\
-    [[parameter]]\nname = \"flange\"\nsets = \"robot.stiffness_n_per_mm\"\nas = \"factor\"\n\
-    scale = \"log\"\nlow = 0.4\nhigh = 10.0\nshared = true\nsource = \"made up\"\n";
+/// A prior of the flange's stiffness.
+const FLANGE: &str = "[[parameter]]\nname = \"flange\"\nsets = \"robot.stiffness_n_per_mm\"\n\
+    as = \"factor\"\nscale = \"log\"\nlow = 0.4\nhigh = 10.0\nshared = true\nsource = \"made up\"\n";
 
 /// Twice as stiff as the robot `servo`, N/mm.
 const STIFF: [f64; 3] = [20.0, 20.0, 40.0];
 
 /// Logs two fingers' probes and attempts from three starts each, and their table; gives its path.
-fn logged(folder: &Studies) -> String {
-    let servo = ROBOTS.iter().find(|robot| robot.name == "servo").unwrap().text;
+fn hidden(folder: &Studies) -> String {
+    let servo = include_str!("../robots/servo.toml");
     let stiff = servo.replace("[10.0, 10.0, 20.0]", &format!("{STIFF:?}"));
     assert_ne!(stiff, servo);
     let robot = folder.file("stiff.toml", stiff);
-    let mut runs = "log,infill_density_percent,infill_direction_deg,offset_mm,outcome\n".to_owned();
-    for density in [10, 30] {
-        for (i, offset) in ["-2", "0", "2", ""].into_iter().enumerate() {
-            let name = format!("{density}-{i}.csv");
-            let what =
-                if offset.is_empty() { "--probe".into() } else { format!("--offset-mm {offset}") };
-            let line = format!(
-                "trial --task usb --density {density} --direction 0 --robot {robot} {what} --json \
-                 --set task.friction.plug_socket=0.3 --log {}",
-                folder.word(&name)
-            );
-            let found = optimize_line(&line).json();
-            let outcome = match (offset, &found["failure"]) {
-                ("", _) => "probe".to_owned(),
-                (_, Value::Null) => "inserted".to_owned(),
-                (_, class) => class.to_string(),
-            };
-            runs += &format!("{name},{density},0,{offset},{outcome}\n");
-        }
-    }
+    let more = format!("--robot {robot} --set task.friction.plug_socket=0.3");
+    let runs = logged(folder, "", [[10, 0], [30, 0]], ["-2", "0", "2", ""], &more);
     folder.file("runs.csv", runs)
 }
 
 #[test]
 fn what_was_hidden_is_found_and_goes_into_every_command() {
     let folder = Studies::new();
-    let runs = logged(&folder);
-    let priors = folder.file("few.toml", FEW);
+    let runs = hidden(&folder);
+    let priors = folder.file("few.toml", FRICTION.to_owned() + FLANGE);
     let (cell, again) = (folder.word("cell.toml"), folder.word("again.toml"));
     let identify = format!("identify --task usb --runs {runs} --priors {priors} --json --out");
     let found = optimize_line(&format!("{identify} {cell}")).json();
@@ -73,7 +51,7 @@ fn what_was_hidden_is_found_and_goes_into_every_command() {
 #[test]
 fn a_bad_log_is_named_and_nothing_is_written() {
     let folder = Studies::new();
-    let runs = logged(&folder);
+    let runs = hidden(&folder);
     let bad = folder.read("30-1.csv");
     let line = bad.lines().nth(99).unwrap();
     let (most, _) = line.rsplit_once(',').unwrap();
@@ -103,12 +81,11 @@ fn scaled(log: &str, names: &[&str], by: f64) -> String {
 #[test]
 fn a_fault_of_the_columns_is_a_remark_and_logs_that_tell_nothing_are_an_error() {
     let folder = Studies::new();
-    logged(&folder);
+    hidden(&folder);
     let log = folder.read("30-1.csv");
     let header = "log,infill_density_percent,infill_direction_deg,offset_mm,outcome";
     let runs = folder.file("one.csv", format!("{header}\na.csv,30,0,0,inserted\n"));
-    let (head, _) = FEW.rsplit_once("[[parameter]]").unwrap();
-    let (priors, cell) = (folder.file("one.toml", head), folder.word("cell.toml"));
+    let (priors, cell) = (folder.file("one.toml", FRICTION), folder.word("cell.toml"));
     let identify = format!("identify --task usb --runs {runs} --priors {priors} --robot servo");
     let forces = ["fx_n", "fy_n", "fz_n"];
     let targets = ["target_x_mm", "target_y_mm", "target_z_mm"];
@@ -120,9 +97,7 @@ fn a_fault_of_the_columns_is_a_remark_and_logs_that_tell_nothing_are_an_error() 
         let found = optimize_line(&format!("{identify} --json")).json();
         let of = |remark: &Value| remark["serious"] == true && remark.to_string().contains(cause);
         assert!(found["remarks"].as_array().unwrap().iter().any(of), "{cause}: {found}");
-        let text = optimize_line(&identify);
-        let text = text.succeeds().split_whitespace().collect::<Vec<_>>().join(" ");
-        assert!(text.contains(cause), "{cause}: {text}");
+        optimize_line(&identify).says_in_any_lines(cause);
     }
     for (by, cause) in [(-1.0, "`force_sign`"), (1.0 / 9.80665, "another unit than newtons")] {
         folder.file("a.csv", scaled(&log, &forces, by));

@@ -1,5 +1,6 @@
 //! The contact simulation on the four shipped tasks: does the physics hold, not the code.
 
+use crate::common::shipped::{finger, rig, robot, task};
 use contact::direct::Direct;
 use contact::rapier::Rapier;
 use contact::scene::{
@@ -7,8 +8,8 @@ use contact::scene::{
 };
 use contact::{Engine, World};
 use finray::printed::PrintedFinger;
-use input::shipped::{FINGERS, ROBOTS, STIFFNESS, Shipped, TASKS, UNCERTAINTIES};
-use input::units::{DEG, MM, N_PER_MM};
+use input::shipped::{FINGERS, STIFFNESS, Shipped, TASKS, UNCERTAINTIES};
+use input::units::{DEG, MM};
 use insertion::evaluation::robustness::{self, Plan};
 use insertion::evaluation::tolerance::{Search, evaluate};
 use insertion::evaluation::uncertainty::Uncertainty;
@@ -16,7 +17,6 @@ use insertion::finger::Finger;
 use insertion::finger::file::FingerFile;
 use insertion::finger::model::{ComputedFingers, FingerSource};
 use insertion::outcome::{FailureClass, Outcome};
-use insertion::robot::Robot;
 use insertion::space::Design;
 use insertion::stiffness;
 use insertion::surrogate::{self, Prediction};
@@ -27,21 +27,6 @@ use insertion::trial::run::EngineRig;
 use insertion::trial::{Conditions, Grasp, PhaseEnd, Rig, Trial, picture};
 use nalgebra::Vector3;
 
-fn task(name: &str) -> Task {
-    let file = TASKS.iter().find(|file| file.name == name).unwrap();
-    Task::parse(file.text, file.file).unwrap()
-}
-
-fn robot(name: &str) -> Robot {
-    let file = ROBOTS.iter().find(|file| file.name == name).unwrap();
-    Robot::parse(file.text, file.file).unwrap()
-}
-
-/// A task on a robot in the engine `direct`.
-fn rig(task: Task, name: &str) -> EngineRig {
-    EngineRig::new(task, &robot(name), Box::<Direct>::default()).unwrap()
-}
-
 /// A shipped task on the robot `servo` in the engine `direct`.
 fn direct(name: &str) -> EngineRig {
     rig(task(name), "servo")
@@ -50,10 +35,6 @@ fn direct(name: &str) -> EngineRig {
 /// The end of a trial's phase of that name.
 fn phase<'a>(trial: &'a Trial, name: &str) -> &'a PhaseEnd {
     trial.phases.iter().find(|phase| phase.name == name).unwrap()
-}
-
-fn finger(compliance: f64, assembly: f64) -> Finger {
-    Finger::new(compliance * N_PER_MM, assembly * N_PER_MM)
 }
 
 fn trial(rig: &EngineRig, finger: &Finger, offset_mm: f64) -> Trial {

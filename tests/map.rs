@@ -1,32 +1,21 @@
 //! Capture maps of the contact simulation: against the window, their mirror images and a closed form.
 
+use crate::common::shipped::{self, rig, task};
 use analysis::map::{Axes, CaptureMap, Plane};
-use contact::direct::Direct;
-use input::shipped::{ROBOTS, TASKS};
-use input::units::N_PER_MM;
 use insertion::evaluation::tolerance::{Search, evaluate};
 use insertion::finger::Finger;
 use insertion::outcome::Outcome;
-use insertion::robot::Robot;
 use insertion::space::Design;
 use insertion::task::{Solid, Task};
 use insertion::trial::Grasp;
 use insertion::trial::run::EngineRig;
 use std::ops::Range;
 
-fn rig(task: Task) -> EngineRig {
-    let file = ROBOTS.iter().find(|file| file.name == "servo").unwrap();
-    let robot = Robot::parse(file.text, file.file).unwrap();
-    EngineRig::new(task, &robot, Box::<Direct>::default()).unwrap()
-}
-
-/// The text of the task `ket8`: a key whose parts are boxes.
-fn ket8() -> &'static str {
-    TASKS.iter().find(|file| file.name == "ket8").unwrap().text
-}
+/// A key whose parts are boxes.
+const KET8: &str = include_str!("../tasks/ket8.toml");
 
 fn finger() -> Finger {
-    Finger::new(1.2 * N_PER_MM, 52.4 * N_PER_MM)
+    shipped::finger(1.2, 52.4)
 }
 
 fn map(rig: &EngineRig) -> CaptureMap {
@@ -67,15 +56,15 @@ fn mirrored(mut task: Task, axis: usize) -> Task {
 /// The stretch along y holds the window, and a mirrored task has the mirrored map.
 #[test]
 fn a_map_holds_the_window_and_its_mirror_image_is_that_of_the_mirrored_task() {
-    let task = Task::parse(ket8(), "ket8").unwrap();
-    let rig_of_it = rig(task.clone());
+    let task = task("ket8");
+    let rig_of_it = rig(task.clone(), "servo");
     let original = map(&rig_of_it);
     let window = evaluate(&rig_of_it, &finger(), Search::Walk).window;
     let [low, high] = original.window_mm().unwrap();
     let off = [low - window.negative_mm(), high - window.positive_mm()];
     assert!(off.iter().all(|off| off.abs() <= 0.25), "{off:?} mm of {window:?}");
     for axis in [0, 1] {
-        let other = map(&rig(mirrored(task.clone(), axis)));
+        let other = map(&rig(mirrored(task.clone(), axis), "servo"));
         let mut differ = 0;
         for y in -40..=40 {
             for x in -20..=20 {
@@ -94,7 +83,7 @@ fn a_map_holds_the_window_and_its_mirror_image_is_that_of_the_mirrored_task() {
 #[test]
 fn a_square_peg_is_captured_as_far_as_clearance_and_chamfer_reach() {
     let (clearance_mm, chamfer_mm) = (0.15, 1.0);
-    let rig = rig(peg(clearance_mm, chamfer_mm));
+    let rig = rig(peg(clearance_mm, chamfer_mm), "servo");
     let map = map(&rig);
     let reach = clearance_mm / 2.0 + chamfer_mm;
     for y in -8..=8 {
@@ -108,7 +97,7 @@ fn a_square_peg_is_captured_as_far_as_clearance_and_chamfer_reach() {
 
 /// A square peg of 8 mm, upright above its hole, whose rim is chamfered.
 fn peg(clearance_mm: f64, chamfer_mm: f64) -> Task {
-    let text = ket8();
+    let text = KET8;
     let [head, grip, strategy, success] =
         ["name", "[grip]", "[strategy]", "[success]"].map(|key| text.find(key).unwrap());
     let section = |range: Range<usize>| &text[range];

@@ -1,6 +1,6 @@
 //! Objectives, constraints, fronts and several tasks, through the real binary on the fake engine.
 
-use crate::common::{Ran, Studies, optimize, run};
+use crate::common::{Ran, Studies, command, fake, optimize, optimize_line, run};
 use serde_json::Value;
 use std::fs;
 
@@ -10,27 +10,13 @@ fn evaluations(studies: &Studies, name: &str) -> Vec<Value> {
     journal.lines().skip(2).map(|line| serde_json::from_str(line).unwrap()).collect()
 }
 
-/// Cells of a column of a study's table.
-fn column(studies: &Studies, name: &str, key: &str) -> Vec<String> {
-    let mut reader = csv::Reader::from_path(studies.dir(name).join("evaluations.csv")).unwrap();
-    let at = reader.headers().unwrap().iter().position(|header| header == key);
-    let at = at.unwrap_or_else(|| panic!("no column {key}"));
-    reader.records().map(|row| row.unwrap()[at].to_owned()).collect()
-}
-
-fn report(studies: &Studies, name: &str) -> String {
-    studies.read(&format!("{name}/report.html"))
-}
-
 fn number(value: &Value) -> f64 {
     value.as_f64().unwrap_or_else(|| panic!("{value} is no number"))
 }
 
 fn evaluate(density: u32, direction: u32, more: &[&str]) -> Ran {
-    let (density, direction) = (density.to_string(), direction.to_string());
-    let finger = ["--density", &density, "--direction", &direction];
-    let task = ["evaluate", "--task", "usb", "--engine", "fake"];
-    optimize(&[&task[..], &finger, more].concat())
+    let finger = format!("--density {density} --direction {direction}");
+    fake(&format!("evaluate --task usb {finger} {}", more.join(" ")))
 }
 
 #[test]
@@ -51,11 +37,10 @@ fn a_success_rate_is_that_of_the_evaluation_with_the_studys_seed() {
     assert_eq!(alone["success_inserted"].as_u64().unwrap() + failed, 100);
     let other = evaluate(density, direction, &[&errors[..], &["--seed", "1"]].concat()).json();
     assert_ne!(other["success_failure_counts"], alone["success_failure_counts"]);
-    let rates = column(&studies, "s", "success_rate");
-    assert_eq!(rates, column(&studies, "s", "objective_share"));
-    assert!(report(&studies, "s").contains("95 % interval"));
-    let text = studies.study("s", 12, &["--objective", "success-rate"]);
-    assert!(text.succeeds().contains("95 % interval"), "{}", text.stdout);
+    let rates = studies.column("s", "success_rate");
+    assert_eq!(rates, studies.column("s", "objective_share"));
+    assert!(studies.page("s").contains("95 % interval"));
+    studies.study("s", 12, &["--objective", "success-rate"]).says(&["95 % interval"]);
 }
 
 #[test]
@@ -122,12 +107,10 @@ fn only_a_design_that_keeps_the_constraints_is_recommended() {
     assert_eq!(number(&result["best"]["objective_mm"]), best);
     assert!(number(&result["best"]["peak_force_n"]) <= 8.6);
     assert_eq!(result["feasible"], kept.len());
-    let text = studies.study("s", 24, &constraint);
-    let shown = format!("satisfies peak-force<={}", 8.6);
-    assert!(text.succeeds().contains(&shown), "{}", text.stdout);
-    let page = report(&studies, "s");
+    studies.study("s", 24, &constraint).says(&["satisfies peak-force<=8.6"]);
+    let page = studies.page("s");
     assert!(page.contains("peak-force&lt;=8.6") && page.contains("violates a constraint"));
-    assert_eq!(column(&studies, "s", "violation slip<=0.2").len(), 24);
+    assert_eq!(studies.column("s", "violation slip<=0.2").len(), 24);
 }
 
 #[test]
@@ -136,19 +119,15 @@ fn where_nothing_keeps_the_constraints_nothing_is_recommended() {
     for optimizer in ["gp", "cma-es"] {
         let more = ["--constraint", "peak-force<=3", "--optimizer", optimizer];
         let text = studies.study(optimizer, 16, &more);
-        let words = "none satisfies all constraints; nearest";
-        assert!(text.succeeds().contains(words), "{}", text.stdout);
+        text.says(&["none satisfies all constraints; nearest"]);
         let result = studies.study(optimizer, 16, &[&more[..], &["--json"]].concat()).json();
         assert_eq!((&result["best"], &result["feasible"]), (&Value::Null, &0.into()));
-        let page = report(&studies, optimizer);
+        let page = studies.page(optimizer);
         assert!(page.contains("<h1>No design can be recommended</h1>"));
         // The one named violates least.
-        let forces = column(&studies, optimizer, "peak_force_n");
-        let least = forces.iter().map(|n| n.parse().unwrap()).fold(f64::INFINITY, f64::min);
-        let nearest = format!("{least:.1} N, violates peak-force<=3");
-        // Long lines are wrapped.
-        let words: Vec<&str> = text.stdout.split_whitespace().collect();
-        assert!(words.join(" ").contains(&nearest), "{nearest}: {}", text.stdout);
+        let forces = studies.numbers(optimizer, "peak_force_n");
+        let least = forces.into_iter().fold(f64::INFINITY, f64::min);
+        text.says_in_any_lines(&format!("{least:.1} N, violates peak-force<=3"));
         // The shortest reach there is has 8 N: towards there the model went.
         assert!(optimizer != "gp" || least < 8.1, "{least}");
     }
@@ -183,12 +162,11 @@ fn two_objectives_give_a_front() {
     }
     assert!((number(&result["hypervolume"]) - area).abs() < 1e-9, "{area}");
     let text = studies.study("s", 30, &[&more[..], &["--verbose"]].concat());
-    assert!(text.succeeds().contains("Choose from"), "{}", text.stdout);
-    assert!(text.stdout.contains("from the reference range 0.0 mm, peak-force"));
-    let page = report(&studies, "s");
+    text.says(&["Choose from", "from the reference range 0.0 mm, peak-force"]);
+    let page = studies.page("s");
     assert!(page.contains("<section id=\"front\">") && page.contains("hypervolume"));
     assert!(studies.read("s/front.svg").contains("peak-force (N)"));
-    assert_eq!(column(&studies, "s", "objective_2_n"), column(&studies, "s", "peak_force_n"));
+    assert_eq!(studies.column("s", "objective_2_n"), studies.column("s", "peak_force_n"));
 }
 
 #[test]
@@ -210,8 +188,8 @@ fn constraints_bound_the_front_and_three_objectives_are_possible() {
 fn a_force_is_made_small() {
     let studies = Studies::new();
     let result = studies.study("s", 20, &["--objective", "peak-force", "--json"]).json();
-    let forces = column(&studies, "s", "objective_n");
-    let least = forces.iter().map(|n| n.parse().unwrap()).fold(f64::INFINITY, f64::min);
+    let forces = studies.numbers("s", "objective_n");
+    let least = forces.into_iter().fold(f64::INFINITY, f64::min);
     assert_eq!(number(&result["best"]["objective_n"]), least);
     assert_eq!(least, 8.0, "the shortest reach there is");
     assert!(studies.journal("s").contains("\"directions\":[1]"));
@@ -254,11 +232,11 @@ fn several_tasks_are_evaluated_and_aggregated() {
             assert!((number(&line["values"][0]) - expected(*usb, far)).abs() < 1e-9, "{name}");
         }
     }
-    let page = report(&studies, "mean");
+    let page = studies.page("mean");
     assert!(page.contains("start along y on usb,") && page.contains("start along y on far,"));
     assert!(page.contains("mean of unscaled values"));
-    assert_eq!(column(&studies, "mean", "usb.range_mm").len(), 6);
-    assert_ne!(column(&studies, "mean", "far.range_mm"), column(&studies, "mean", "usb.range_mm"));
+    assert_eq!(studies.column("mean", "usb.range_mm").len(), 6);
+    assert_ne!(studies.column("mean", "far.range_mm"), studies.column("mean", "usb.range_mm"));
     let more = ["--task", &tasks, "--optimizer", "sobol", "--json"];
     let best = studies.study("min", 6, &more).json()["best"]["tasks"].clone();
     assert_eq!((&best[0]["task"], &best[1]["task"]), (&"usb".into(), &"far".into()));
@@ -279,51 +257,41 @@ fn a_study_of_several_tasks_keeps_them_and_has_its_own_folder() {
     let rate = |of: &Value| number(&of["success_rate"]);
     let (usb, far) = (rate(&line["user_attrs"]["tasks"][0]), rate(&line["user_attrs"]["tasks"][1]));
     assert_eq!(number(&line["values"][0]), usb.min(far));
-    let mut named =
-        crate::common::command(&["--task", "usb,rj45", "--engine", "fake", "--budget", "2"]);
+    let mut named = command(&["--task", "usb,rj45", "--engine", "fake", "--budget", "2"]);
     run(named.current_dir(&studies.0)).succeeds();
     assert!(studies.dir("results/usb+rj45-gp-seed0/report.html").exists());
 }
 
 #[test]
 fn bad_goals_are_answered_with_2_and_what_would_be_right() {
-    let finger = ["--density", "20", "--direction", "10"];
-    for (arguments, parts) in [
-        (&["--objective", "rnage"][..], &["success-rate, robust-range, peak-force, slip"][..]),
-        (&["--objective", "range,range"], &["range is given twice"]),
-        (&["--objective", "range,slip,peak-force,success-rate"], &["at most 3"]),
-        (&["--constraint", "peak-force<30"], &["MEASURE<=NUMBER", "'peak-force<=30'"]),
-        (&["--constraint", "force<=30"], &["`force`", "peak-force"]),
-        (&["--constraint", "peak-force<=30N"], &["30N", "without its unit"]),
-        (&["--uncertainty", "typical"], &["--uncertainty", "success-rate", "--objective"]),
-        (&["--objective", "success-rate", "--uncertainty", "tipical"], &["did you mean `typical`"]),
-        (&["--objective", "range,slip", "--optimizer", "cma-es"], &["cma-es", "gp, random, sobol"]),
-        (&["--objective", "range,slip", "--optimizer", "cma-es"], &["single objective only"]),
-        (&["--objective", "range,slip", "--polish"], &["--polish", "single objective only"]),
-        (&["--aggregate", "mean"], &["several tasks", "--task usb,rj45"]),
-        (&["--task", "usb,usb"], &["two tasks are called `usb`"]),
-        (&["--task", "usb,usbb"], &["usbb", "ket8, ket12"]),
-        (&["--task", "usb,"], &["ket8, ket12"]),
-        (&["--task", "usb,rj45", "--aggregate", "max"], &["min, mean, weighted"]),
-        (&["--task", "usb,rj45", "--aggregate", "weighted"], &["0 weights for 2 tasks"]),
-        (&["--task", "usb,rj45", "--weights", "1,2"], &["--aggregate weighted"]),
-        (
-            &["--task", "usb,rj45", "--aggregate", "weighted", "--weights", "1"],
-            &["1 weights for 2 tasks"],
-        ),
-        (
-            &["--task", "usb,rj45", "--aggregate", "weighted", "--weights", "1,-1"],
-            &["--weights", "out of range"],
-        ),
+    for (words, parts) in [
+        ("--objective rnage", &["success-rate, robust-range, peak-force, slip"][..]),
+        ("--objective range,range", &["range is given twice"]),
+        ("--objective range,slip,peak-force,success-rate", &["at most 3"]),
+        ("--constraint peak-force<30", &["MEASURE<=NUMBER", "'peak-force<=30'"]),
+        ("--constraint force<=30", &["`force`", "peak-force"]),
+        ("--constraint peak-force<=30N", &["30N", "without its unit"]),
+        ("--uncertainty typical", &["--uncertainty", "success-rate", "--objective"]),
+        ("--objective success-rate --uncertainty tipical", &["did you mean `typical`"]),
+        ("--objective range,slip --optimizer cma-es", &["cma-es", "gp, random, sobol"]),
+        ("--objective range,slip --optimizer cma-es", &["single objective only"]),
+        ("--objective range,slip --polish", &["--polish", "single objective only"]),
+        ("--aggregate mean", &["several tasks", "--task usb,rj45"]),
+        ("--task usb,usb", &["two tasks are called `usb`"]),
+        ("--task usb,usbb", &["usbb", "ket8, ket12"]),
+        ("--task usb,", &["ket8, ket12"]),
+        ("--task usb,rj45 --aggregate max", &["min, mean, weighted"]),
+        ("--task usb,rj45 --aggregate weighted", &["0 weights for 2 tasks"]),
+        ("--task usb,rj45 --weights 1,2", &["--aggregate weighted"]),
+        ("--task usb,rj45 --aggregate weighted --weights 1", &["1 weights for 2 tasks"]),
+        ("--task usb,rj45 --aggregate weighted --weights 1,-1", &["--weights", "out of range"]),
     ] {
         let studies = Studies::new();
-        let given = if arguments.contains(&"--task") { &[][..] } else { &["--task", "usb"] };
-        let study = ["--engine", "fake", "--budget", "4", "--out", &studies.word("s")];
-        optimize(&[&study[..], given, arguments].concat()).fails(2, parts);
+        let given = if words.contains("--task") { "" } else { "--task usb" };
+        fake(&format!("--budget 4 --out {} {given} {words}", studies.word("s"))).fails(2, parts);
         assert!(!studies.dir("s").exists(), "bad usage leaves no folder behind");
     }
-    optimize(&[&["evaluate", "--task", "usb,rj45"], &finger[..]].concat())
-        .fails(2, &["one --task"]);
+    optimize_line("evaluate --task usb,rj45 --density 20 --direction 10").fails(2, &["one --task"]);
     evaluate(20, 10, &["--seed", "1"]).fails(2, &["--uncertainty"]);
 }
 
@@ -331,9 +299,8 @@ fn bad_goals_are_answered_with_2_and_what_would_be_right() {
 fn changed_goals_are_another_study_and_odd_ones_are_not_compared() {
     let studies = Studies::new();
     studies.study("s", 4, &["--constraint", "slip<=1"]).succeeds();
-    studies
-        .study("s", 4, &[])
-        .fails(2, &["constraints.0: the study has \"slip<=1\", now has nothing"]);
+    let changed = "constraints.0: the study has \"slip<=1\", now has nothing";
+    studies.study("s", 4, &[]).fails(2, &[changed]);
     studies.study("s", 4, &["--task", "usb,rj45"]).fails(2, &["tasks.1"]);
     studies.study("front", 4, &["--objective", "range,slip"]).succeeds();
     let dir = |name| studies.word(name);

@@ -1,6 +1,6 @@
 //! Paths of numbers: an unknown one is refused wherever it stands, with the nearest that is known.
 
-use crate::common::{Ran, Studies, optimize_line};
+use crate::common::{Studies, fake, optimize_line};
 
 const CELL: &str = include_str!("fixtures/v0.5.0/cell.toml");
 const BENCH: &str = include_str!("../priors/bench.toml");
@@ -8,11 +8,6 @@ const CODESIGN: &str = include_str!("../spaces/codesign.toml");
 
 const EVALUATE: &str = "evaluate --task usb --density 20 --direction 10";
 const CALIBRATE: &str = "calibrate --task usb --measurements published --simulations 20 --no-cache";
-
-/// The fake engine, a closed formula.
-fn fake(line: &str) -> Ran {
-    optimize_line(&format!("{line} --engine fake"))
-}
 
 fn changed(text: &str, [from, to]: [&str; 2]) -> String {
     assert!(text.contains(from), "{from}");

@@ -1,6 +1,6 @@
 //! What interruptions, other programs, lying workers and changed files must not cost.
 
-use crate::common::{Studies, answer, command, optimize, read, run};
+use crate::common::{FEW, HEAD, Studies, answer, command, kill, optimize, read, run, setting};
 use ask_tell::stream::stream;
 use rand::RngExt;
 use std::fs;
@@ -10,11 +10,8 @@ use std::time::{Duration, Instant};
 /// How long after a signal a process may still take on a busy machine; what is ended here would go on
 /// for longer.
 const SOON: Duration = Duration::from_secs(4);
-/// Options that make a prediction for the bench quick.
-const FEW: [&str; 6] = ["--task", "ket8", "--simulations", "24", "--samples", "20"];
-const HEAD: &str = "task,infill_density_percent,infill_direction_deg,range_mm\n";
 /// Kills of each flag; set the environment variable `KILLS` for more.
-const KILLS: u32 = 2;
+const KILLS: u64 = 2;
 
 #[test]
 fn a_changed_task_needs_evaluations_of_its_own() {
@@ -43,19 +40,10 @@ fn a_changed_task_needs_evaluations_of_its_own() {
     assert!(resumed.contains("segment"), "{resumed}");
 }
 
-fn kill(mut child: Child, signal: &str) -> Duration {
-    let sent = Instant::now();
-    let id = child.id().to_string();
-    assert!(std::process::Command::new("kill").args([&format!("-{signal}"), &id]).status().is_ok());
-    child.wait().expect("it ends");
-    sent.elapsed()
-}
-
 #[test]
 fn a_resumed_study_answers_as_if_it_had_not_been_killed_whatever_its_flags() {
     let folder = Studies::new();
     let file = folder.file("bench.csv", format!("{HEAD}ket8,10,0,7.6\nket8,20,0,5.7\n"));
-    let kills = std::env::var("KILLS").ok().and_then(|n| n.parse().ok()).unwrap_or(KILLS);
     let with_bench = [&FEW[..], &["--measurements", &file]].concat();
     let flags: [&[&str]; 16] = [
         &with_bench,
@@ -79,7 +67,7 @@ fn a_resumed_study_answers_as_if_it_had_not_been_killed_whatever_its_flags() {
     for (i, flags) in flags.into_iter().enumerate() {
         let whole = folder.study(&format!("whole-{i}"), 20, &[flags, &["--json"]].concat());
         let whole = answer(&whole);
-        for round in 0..kills {
+        for round in 0..setting("KILLS", KILLS) {
             let name = format!("killed-{i}-{round}");
             let lines = random.random_range(2..24);
             let child = folder.begun(&name, 20, flags, lines);

@@ -1,15 +1,15 @@
 //! Studies without a budget: they end when no design is expected to gain, wherever they were
 //! interrupted, and their confirmations are kept with them.
 
-use crate::common::{Ran, Studies, answer, command, read, run, start};
+use crate::common::{Ran, Studies, answer, command, kill, run, setting, start};
 use ask_tell::stream::stream;
 use rand::RngExt;
 use serde_json::Value;
-use std::process::{Child, Command};
+use std::process::Command;
 use std::time::Duration;
 
 /// Kills of a study; set the environment variable `KILLS` for more.
-const KILLS: u32 = 6;
+const KILLS: u64 = 6;
 
 /// A quiet study on the fake engine without a budget, not yet started.
 fn settling(folder: &Studies, name: &str, more: &[&str]) -> Command {
@@ -85,7 +85,7 @@ fn a_study_goes_on_once_a_design_has_inserted() {
 /// Confirmations, without the provenance.
 fn confirmed(folder: &Studies, name: &str) -> Value {
     let mut file: Value =
-        serde_json::from_str(&read(&folder.dir(name).join("walk.json"))).expect("JSON");
+        serde_json::from_str(&folder.read(&format!("{name}/walk.json"))).expect("JSON");
     file.as_object_mut().expect("an object").remove("provenance");
     file
 }
@@ -101,11 +101,9 @@ fn a_study_without_a_budget_settles_and_stays_settled() {
     let (journal, kept) = (folder.journal("s"), confirmed(&folder, "s"));
     assert_eq!(answer(&run(&mut settling(&folder, "s", &[]))), found);
     assert_eq!((folder.journal("s"), confirmed(&folder, "s")), (journal.clone(), kept));
-    let said = run(command(&["resume", "--quiet"]).arg(folder.dir("s"))).succeeds().to_owned();
-    let said = said.split_whitespace().collect::<Vec<_>>().join(" ");
-    let expected =
-        format!("settled after {evaluations} evaluations: no finger is expected to gain 0.3 mm");
-    assert!(said.contains(&expected), "{said}");
+    folder.resume("s").says_in_any_lines(&format!(
+        "settled after {evaluations} evaluations: no finger is expected to gain 0.3 mm"
+    ));
     assert_eq!(folder.journal("s"), journal);
     // No better finger is there: every design of the space, none of them as firm by 0.3 mm more.
     let all = folder.study("all", 861, &["--optimizer", "grid", "--json"]).json();
@@ -140,16 +138,14 @@ fn neither_threads_nor_kills_change_a_study_that_settles() {
     let threads = answer(&run(&mut settling(&folder, "threads", &["--threads", "4"])));
     assert_eq!((&threads, confirmed(&folder, "threads")), (&whole, confirmed(&folder, "whole")));
     assert_eq!(folder.journal("threads"), folder.journal("whole"));
-    let kills = std::env::var("KILLS").ok().and_then(|n| n.parse().ok()).unwrap_or(KILLS);
     let mut random = stream(0, 0, "kills of settling studies");
-    for round in 0..kills {
+    for round in 0..setting("KILLS", KILLS) {
         let name = format!("killed-{round}");
         // Some in the search, most while something is confirmed.
-        let mut child: Child = start(&mut settling(&folder, &name, &more));
+        let mut child = start(&mut settling(&folder, &name, &more));
         folder.wait_for_lines(&name, if round % 4 == 0 { 10 } else { 29 }, &mut child);
         std::thread::sleep(Duration::from_millis(random.random_range(0..60)));
-        child.kill().expect("it can be killed");
-        child.wait().expect("it ends");
+        kill(child, "KILL");
         let resumed = run(&mut settling(&folder, &name, &more));
         assert_eq!(answer(&resumed), whole);
         assert_eq!(confirmed(&folder, &name), confirmed(&folder, "whole"));

@@ -1,6 +1,6 @@
 //! Studies: the same seed gives the same journal, whatever happens on the way.
 
-use crate::common::{SLOW, Studies, end, optimize_line, read, run, start};
+use crate::common::{HEAD, SLOW, Studies, end, optimize_line, read, run, sealed, start};
 use ask_tell::OptimizerKind;
 use ask_tell::stream::stream;
 use rand::RngExt;
@@ -255,28 +255,23 @@ fn finger_and_strategy_start_from_the_task_and_keep_to_its_limits() {
     let found =
         studies.study("both", 12, &["--task", &usb, "--space", "codesign", "--json"]).json();
     assert_eq!(found["constraints"], serde_json::json!(["peak-force<=90"]));
-    let table = std::fs::read_to_string(studies.dir("both").join("evaluations.csv")).unwrap();
-    let mut rows = table.lines().map(|line| line.split(',').collect::<Vec<_>>());
-    let head = rows.next().unwrap();
-    let column = |name: &str| head.iter().position(|key| *key == name).unwrap();
-    let speed = column("task.strategy.phase.assembly.speed_mm_per_s");
-    let rows: Vec<Vec<&str>> = rows.collect();
-    assert!(rows.iter().all(|row| row[speed].parse::<f64>().unwrap() <= 150.0));
+    let speeds = studies.numbers("both", "task.strategy.phase.assembly.speed_mm_per_s");
+    assert!(speeds.len() == 12 && speeds.iter().all(|speed| *speed <= 150.0), "{speeds:?}");
     let own = [
         ("infill_density_percent", "20"),
         ("task.strategy.tilt_deg", "10"),
         ("task.strategy.phase.touch.preload_mm", "0.3"),
         ("task.strategy.phase.side.move_mm.y", "-10"),
         ("task.grip.force_n", "5"),
-    ];
-    assert!(rows.iter().any(|row| own.iter().all(|(key, value)| row[column(key)] == *value)));
+    ]
+    .map(|(key, value)| (studies.column("both", key), value));
+    assert!((0..12).any(|row| own.iter().all(|(column, value)| column[row] == *value)));
     // A limit that is given counts.
     let more = ["--task", &usb, "--space", "codesign", "--json", "--constraint", "peak-force<=80"];
     let found = studies.study("given", 2, &more).json();
     assert_eq!(found["constraints"], serde_json::json!(["peak-force<=80"]));
     // A bench prediction knows no forces.
-    let head = "task,infill_density_percent,infill_direction_deg,range_mm\n";
-    let bench = studies.file("bench.csv", format!("{head}usb,20,10,5.0\n"));
+    let bench = studies.file("bench.csv", format!("{HEAD}usb,20,10,5.0\n"));
     let few = ["--task", &usb, "--space", "codesign", "--simulations", "24", "--samples", "20"];
     studies.study("bench", 2, &[&few[..], &["--measurements", &bench]].concat()).succeeds();
 }
@@ -308,18 +303,16 @@ fn a_study_measured_with_other_settings_is_refused_unless_that_is_accepted() {
     assert_eq!(after["segments"][1]["first"], 12);
     let journal = studies.journal("changed");
     assert_eq!(journal.lines().count(), 2 + BUDGET as usize + 1, "one line for the segment");
-    assert_eq!(
-        journal.lines().filter(|line| line.contains("\"op_code\":4")).collect::<Vec<_>>(),
-        expected.lines().filter(|line| line.contains("\"op_code\":4")).collect::<Vec<_>>(),
-        "a comment changes no value"
-    );
+    let [found, whole] = [&journal, &expected]
+        .map(|text| text.lines().filter(|line| line.contains("\"op_code\":4")).collect::<Vec<_>>());
+    assert_eq!(found, whole, "a comment changes no value");
     let page = studies.read("changed/report.html");
     assert!(page.contains("segment 2 (from evaluation 12)"), "the report shows it");
     // From now on it is measured with the changed file.
     studies.study("changed", BUDGET, &own).succeeds();
     studies.resume("changed").succeeds();
     let text = studies.study("changed", BUDGET, &own[..2]);
-    assert!(text.succeeds().contains("segment       2, since evaluation 12"), "{}", text.stdout);
+    text.says(&["segment       2, since evaluation 12"]);
 }
 
 #[test]
@@ -331,8 +324,7 @@ fn a_study_of_other_sources_is_not_resumed() {
     let hash = config.split("source_sha256 = \"").nth(1).expect("it is recorded")[..64].to_owned();
     let other = |text: &str| text.replace(&hash, &"0".repeat(64));
     studies.file("s/study.toml", other(&config));
-    studies
-        .file("s/journal.jsonl", crate::common::sealed(&other(&studies.read("s/journal.jsonl"))));
+    studies.file("s/journal.jsonl", sealed(&other(&studies.read("s/journal.jsonl"))));
     let parts = ["source_sha256: the study has", "now has", "--accept-changed", "--out"];
     studies.resume("s").fails(2, &parts);
     studies.study("s", 6, &[]).fails(2, &parts);
@@ -361,9 +353,8 @@ fn the_best_designs_are_walked_beside_the_journal() {
     assert!(report.contains("from its ribs") && report.contains(&format!("{by_ribs:.1} mm (")));
     // The lower end of the closed form moves with friction.
     assert!(firm(recommended) < recommended["range_mm"].as_f64().unwrap());
-    assert!(
-        json["equivalent_designs"].as_u64() >= Some(1) && json["spread_mm"].as_f64() > Some(0.0)
-    );
+    assert!(json["equivalent_designs"].as_u64() >= Some(1));
+    assert!(json["spread_mm"].as_f64() > Some(0.0));
     assert!(walked[0]["trials"].as_u64() > json["best"]["trials"].as_u64(), "step by step");
     assert_eq!(studies.journal("s").lines().count(), 2 + 8, "not counted in the budget");
     let kept = studies.read("s/walk.json");
@@ -371,9 +362,8 @@ fn the_best_designs_are_walked_beside_the_journal() {
     studies.file("s/walk.json", "{");
     studies.resume("s").succeeds();
     assert_eq!(studies.read("s/walk.json"), kept);
-    let text = studies.study("s", 8, &["--verbose"]);
-    assert!(text.succeeds().contains("walked        step by step"), "{}", text.stdout);
-    assert!(text.stdout.contains(&format!("from its ribs {by_ribs:.1} mm (")), "{}", text.stdout);
+    let from_ribs = format!("from its ribs {by_ribs:.1} mm (");
+    studies.study("s", 8, &["--verbose"]).says(&["walked        step by step", &from_ribs]);
     // What a kill left is gone on from.
     let mut begun: serde_json::Value = serde_json::from_str(&kept).unwrap();
     begun["complete"] = false.into();
@@ -392,14 +382,11 @@ fn the_best_designs_are_walked_beside_the_journal() {
 fn the_order_on_the_bench_says_whose_it_is() {
     let studies = Studies::new();
     let paper = studies.study("paper", 4, &["--no-confirm", "--verbose"]);
-    assert!(paper.succeeds().contains("on usb our validation ranked 11"), "{}", paper.stdout);
+    paper.says(&["on usb our validation ranked 11"]);
     for (name, other) in [("ribs", ["--finger-model", "computed"]), ("robot", ["--robot", "rigid"])]
     {
         let found = studies.study(name, 4, &[&other[..], &["--no-confirm", "--verbose"]].concat());
-        let words = "our validation (paper fingers on servo) ranked";
-        // Long lines are wrapped.
-        let said: Vec<&str> = found.succeeds().split_whitespace().collect();
-        assert!(said.join(" ").contains(words), "{}", found.stdout);
+        found.says_in_any_lines("our validation (paper fingers on servo) ranked");
     }
 }
 
@@ -417,11 +404,7 @@ fn confirming_costs_a_quarter_of_a_study_at_most_and_can_be_left_out() {
             trials += walked["computed"][0]["trials"].as_u64().unwrap();
         }
     }
-    let table = studies.read("s/evaluations.csv");
-    let column =
-        table.lines().next().unwrap().split(',').position(|name| name == "trials").unwrap();
-    let spent = |line: &str| line.split(',').nth(column).unwrap().parse::<u64>().unwrap();
-    let spent: u64 = table.lines().skip(1).map(spent).sum();
+    let spent = studies.numbers("s", "trials").iter().sum::<f64>() as u64;
     assert!(trials > 0 && 4 * trials <= spent, "{trials} of {spent}");
 
     let json = studies.study("quick", 8, &["--no-confirm", "--json"]).json();

@@ -1,27 +1,22 @@
 //! `optimize task`: drafted, imported and checked tasks of your own connector.
 
+use crate::common::shipped::{finger, rig};
 use crate::common::{Ran, Studies, optimize, optimize_line};
 use connector::check::problems;
 use connector::draft::{Dimensions, Size, draft};
 use connector::mesh::{Surface, pick, read};
 use connector::nominal::explain;
-use contact::direct::Direct;
-use input::shipped::{ROBOTS, TASKS};
-use input::units::{MM, N_PER_MM};
-use insertion::finger::Finger;
+use input::shipped::TASKS;
+use input::units::MM;
 use insertion::outcome::Outcome;
-use insertion::robot::Robot;
 use insertion::task::Task;
-use insertion::trial::run::EngineRig;
 use insertion::trial::{Rig, Trial};
 use nalgebra::Point3;
 use serde_json::Value;
 
 const LATCH: &str = include_str!("../tasks/rj45_latch.toml");
 
-fn shipped(name: &str) -> &'static str {
-    TASKS.iter().find(|file| file.name == name).unwrap().text
-}
+const USB: &str = include_str!("../tasks/usb.toml");
 
 /// The program with words separated by blanks, then more.
 fn said(words: &str, more: &[&str]) -> Ran {
@@ -34,14 +29,9 @@ fn changed(text: &str, from: &str, to: &str) -> Result<Task, String> {
     Task::parse(&text.replacen(from, to, 1), "t.toml").map_err(|error| error.to_string())
 }
 
-fn rig(task: &Task) -> EngineRig {
-    let robot = Robot::parse(ROBOTS[0].text, ROBOTS[0].file).unwrap();
-    EngineRig::new(task.clone(), &robot, Box::new(Direct::default())).unwrap()
-}
-
 /// Nominal trial with the middle one of the measured fingers.
 fn trial(task: &Task) -> Trial {
-    rig(task).grasp(&Finger::new(3.0 * N_PER_MM, 30.0 * N_PER_MM)).trial(0.0)
+    rig(task.clone(), "servo").grasp(&finger(3.0, 30.0)).trial(0.0)
 }
 
 /// Draft of a plug WxHxL, or of a round one DxL.
@@ -147,7 +137,7 @@ fn each_fault_is_caught_with_its_key_and_what_would_be_right() {
         (slip, "5.0", "grip.slip_limit_mm", "3.35 mm", "at most 3.0"),
     ] {
         let (name, _) = key.split_once(" = ").unwrap();
-        let found = problems(&changed(shipped("usb"), key, &format!("{name} = {to}")).unwrap());
+        let found = problems(&changed(USB, key, &format!("{name} = {to}")).unwrap());
         let caught = found.iter().any(|found| {
             let parts = [(&found.key, at), (&found.problem, problem), (&found.remedy, remedy)];
             parts.iter().all(|(text, part)| text.contains(part))
@@ -160,7 +150,7 @@ fn each_fault_is_caught_with_its_key_and_what_would_be_right() {
 #[test]
 fn a_file_in_another_unit_is_asked_about() {
     for (factor, unit) in [(1e-3, "metres"), (1.0 / 25.4, "inches")] {
-        let mut file = toml::Value::Table(toml::from_str(shipped("usb")).unwrap());
+        let mut file = toml::Value::Table(toml::from_str(USB).unwrap());
         scale(&mut file, factor, false);
         let task = Task::from_table(file.as_table().unwrap().clone(), "usb").unwrap();
         let found = problems(&task);
@@ -268,10 +258,10 @@ fn a_task_is_copied_like_another_and_shown_as_it_is() {
     let out = &folder.word("my-usb.toml");
     said("task new my-usb --like usb --engine fake --out", &[out]).succeeds();
     let copy = Task::parse(&folder.read("my-usb.toml"), out).unwrap();
-    let usb = Task::parse(shipped("usb"), "usb").unwrap();
+    let usb = Task::parse(USB, "usb").unwrap();
     assert_eq!(copy.name, "my-usb");
     assert_eq!((copy.plug, copy.strategy), (usb.plug, usb.strategy));
-    assert_eq!(said("task show usb", &[]).succeeds(), shipped("usb"));
+    assert_eq!(said("task show usb", &[]).succeeds(), USB);
     said("task show usc", &[]).fails(2, &["did you mean `usb`"]);
     optimize(&["task", "new", "a b", "--out", out]).fails(2, &["letters"]);
     said("task new a --plug 8x3 --clearance 0.1", &[]).fails(2, &["8.25x2.4x6.65"]);
@@ -288,7 +278,7 @@ fn a_check_says_what_a_reader_finds() {
         ("mass_g = 5.0", "", "mass_g"),
         ("force_n", "force", "force"),
     ] {
-        let file = folder.file("bad.toml", shipped("usb").replace(from, to));
+        let file = folder.file("bad.toml", USB.replace(from, to));
         let ran = said("task check --json", &[&file]);
         ran.fails(2, &["1 problem"]);
         let found: Value = serde_json::from_str(&ran.stdout).unwrap();
@@ -303,6 +293,13 @@ fn triangles(name: &str) -> Vec<[Point3<f64>; 3]> {
     bodies.into_iter().flat_map(|body| body.triangles).collect()
 }
 
+/// The triangles as OBJ, with numbers of normals and of a texture that mean nothing to a solid.
+fn obj(triangles: &[[Point3<f64>; 3]]) -> String {
+    let corner = |p: &Point3<f64>| format!("v {} {} {}\n", p.x, p.y, p.z);
+    let face = |i: usize| format!("f {} {}//1 {}/2\n", 3 * i + 1, 3 * i + 2, 3 * i + 3);
+    triangles.iter().flatten().map(corner).chain((0..triangles.len()).map(face)).collect()
+}
+
 /// Reads a number of a result.
 fn number(found: &Value, key: &str) -> f64 {
     found[key].as_f64().unwrap_or_else(|| panic!("{key} in {found}"))
@@ -315,30 +312,22 @@ fn number(found: &Value, key: &str) -> f64 {
 fn an_extruded_pair_is_imported_as_it_was_drawn() {
     let studies = Studies::new();
     let [plug, socket] = ["plug", "socket"].map(|body| {
-        let turned = |p: Point3<f64>| [p.z, p.x, p.y].map(|v| v / 25.4);
-        let mut text = String::new();
-        for (i, triangle) in triangles(&format!("keyed-{body}")).into_iter().enumerate() {
-            for [x, y, z] in triangle.map(turned) {
-                text += &format!("v {x} {y} {z}\n");
-            }
-            text += &format!("f {} {} {}\n", 3 * i + 1, 3 * i + 2, 3 * i + 3);
-        }
-        studies.file(&format!("{body}.obj"), text)
+        let turned = |p: Point3<f64>| Point3::new(p.z, p.x, p.y) / 25.4;
+        let turned: Vec<_> =
+            triangles(&format!("keyed-{body}")).iter().map(|t| t.map(turned)).collect();
+        studies.file(&format!("{body}.obj"), obj(&turned))
     });
     let out = studies.word("keyed.toml");
-    let ran = optimize_line(&format!(
-        "task import --json --unit in --plug {plug} --socket {socket} --out {out}"
-    ));
-    let found: Value = serde_json::from_str(ran.succeeds()).unwrap();
+    let import = "task import --json --unit in --plug";
+    let found = optimize_line(&format!("{import} {plug} --socket {socket} --out {out}")).json();
     assert_eq!((found["unit"].as_str(), found["insert_along"].as_str()), (Some("in"), Some("-x")));
     for axis in ["x", "y"] {
         let clearance = number(&found, &format!("clearance_{axis}_mm"));
         assert!((clearance - 0.2).abs() < 0.03, "{clearance} mm along {axis}");
     }
-    let body: Vec<f64> =
-        found["body_mm"].as_array().unwrap().iter().filter_map(Value::as_f64).collect();
-    let off = body.iter().zip([12.0, 8.0, 18.0]).map(|(is, drawn)| (is - drawn).abs());
-    assert!(off.fold(0.0, f64::max) < 0.2, "{body:?}");
+    for (i, drawn) in [12.0, 8.0, 18.0].into_iter().enumerate() {
+        assert!((found["body_mm"][i].as_f64().unwrap() - drawn).abs() < 0.2, "{found}");
+    }
     assert_eq!(found["check"]["problems"].as_array().map(Vec::len), Some(0), "{found}");
     assert!(number(&found["tuned"], "least_range_mm") > 3.0, "{}", found["tuned"]);
 }
@@ -376,16 +365,16 @@ fn a_loose_plug_finds_its_seat() {
     let [plug, socket] = ["plug", "socket"]
         .map(|body| format!("{}/examples/meshes/usb-{body}.stl", env!("CARGO_MANIFEST_DIR")));
     let out = studies.word("loose.toml");
-    let slippery = shipped("usb").replace("plug_socket = 0.2", "plug_socket = 0.15");
+    let slippery = USB.replace("plug_socket = 0.2", "plug_socket = 0.15");
     let like = studies.file("slippery.toml", slippery);
     let line =
         format!("task import --json --plug {plug} --socket {socket} --like {like} --out {out}");
-    let found: Value = serde_json::from_str(optimize_line(&line).succeeds()).unwrap();
+    let found = optimize_line(&line).json();
     let said = found["found"].to_string();
     assert!(said.contains("mate 12.6 mm"), "{said}");
     assert!((number(&found, "clearance_mm") - 3.0).abs() < 0.1, "{found}");
     // Its mass is that of its own shape; friction is that of the other task.
-    let (made, usb) = (studies.read("loose.toml"), Task::parse(shipped("usb"), "usb").unwrap());
+    let (made, usb) = (studies.read("loose.toml"), Task::parse(USB, "usb").unwrap());
     assert!(made.contains("Weigh yours."), "{made}");
     let made = Task::parse(&made, "loose").unwrap();
     assert_eq!(made.friction.plug_socket, 0.15);
@@ -417,14 +406,7 @@ fn a_surface_is_closed_and_looks_outward() {
         assert!(read(bytes, file).unwrap_err().to_string().contains("./python[step]"));
     }
     // The same solid as OBJ.
-    let mut obj = String::new();
-    for point in whole.iter().flatten() {
-        obj.push_str(&format!("v {} {} {}\n", point.x, point.y, point.z));
-    }
-    for i in 0..whole.len() {
-        obj.push_str(&format!("f {} {}//1 {}/2\n", 3 * i + 1, 3 * i + 2, 3 * i + 3));
-    }
-    let same = &read(obj.as_bytes(), "p.obj").unwrap()[0].triangles;
+    let same = &read(obj(&whole).as_bytes(), "p.obj").unwrap()[0].triangles;
     let same = Surface::new(same, MM).unwrap();
     assert!((same.volume() - volume).abs() < 1e-6 * volume);
 }
@@ -522,36 +504,27 @@ fn explore(path: &str, known: &mut Vec<String>) {
 fn a_header_of_pins_inserts_and_misses_by_one_pitch() {
     let studies = Studies::new();
     let file = studies.word("header.toml");
-    let made = format!("task new header --pins 2x5 --clearance 0.2 --out {file}");
-    let made = optimize_line(&made);
-    let checked = made.succeeds();
-    assert!(
-        checked.contains("no problems") && checked.contains("inserted 6.0 mm deep"),
-        "{checked}"
-    );
+    optimize_line(&format!("task new header --pins 2x5 --clearance 0.2 --out {file}"))
+        .says(&["no problems", "inserted 6.0 mm deep"]);
     let text = studies.read("header.toml");
     let again = "--pins 2x5 --pitch-mm 2.54 --pin-mm 0.64 --pin-length-mm 6 --clearance 0.2 --body 5.08x12.7x20";
     assert!(text.contains(again), "{text}");
     // Ten pins and their body; six bars, five columns of three webs, and a floor.
     assert_eq!(text.matches("[[plug.part]]").count(), 11);
     assert_eq!(text.matches("[[socket.part]]").count(), 6 + 15 + 1);
-    for (offset_mm, outcome) in
-        [("0.4", "inserted"), ("2.54", "plug missed"), ("-2.54", "plug missed")]
-    {
-        let trial =
-            format!("trial --task {file} --density 20 --direction 20 --offset-mm={offset_mm}");
-        let ran = optimize_line(&trial);
-        assert!(ran.succeeds().contains(outcome), "{offset_mm}: {}", ran.succeeds());
-    }
-    let refused = [
+    let trial = format!("trial --task {file} --density 20 --direction 20 --offset-mm");
+    let of = |offset_mm: &str| optimize_line(&format!("{trial}={offset_mm}"));
+    of("0.4").says(&["inserted"]);
+    of("2.54").says(&["plug missed"]);
+    of("-2.54").says(&["plug missed"]);
+    for (words, error) in [
         ("--pins 2x5 --pitch-mm 0.7", "it must be more than a hole, 0.84 mm"),
         ("--pins 2x5 --body 2x2x20", "cover all pins, 3.18 x 10.80 mm"),
         ("--pins 2x0", "ROWSxCOLUMNS"),
         ("--pins 20x20", "at most 100 pins"),
         ("--pins 2x5 --pin-mm 0", "0.1"),
         ("--pins 2x5 --round 8x12", "--round"),
-    ];
-    for (words, error) in refused {
+    ] {
         optimize_line(&format!("task new a {words} --clearance 0.2")).fails(2, &[error]);
     }
 }
@@ -560,34 +533,28 @@ fn a_header_of_pins_inserts_and_misses_by_one_pitch() {
 fn a_key_and_a_chamfer_are_in_the_file_and_the_task_is_shown() {
     let studies = Studies::new();
     let make = |words: &str, name: &str| {
-        let file = studies.word(name);
-        optimize_line(&format!(
-            "task new mine {words} --clearance 0.2 --body 12x12x20 --out {file}"
-        ));
+        let new = format!("task new mine {words} --clearance 0.2 --body 12x12x20 --out");
+        optimize_line(&format!("{new} {}", studies.word(name)));
         studies.read(name)
     };
     let keyed = make("--round 8x12 --key 2x1", "keyed.toml");
-    assert!(
-        keyed.contains("Made by: optimize task new mine --round 8x12 --key 2x1 --clearance 0.2"),
-        "{keyed}"
-    );
+    let made = "Made by: optimize task new mine --round 8x12 --key 2x1 --clearance 0.2";
+    assert!(keyed.contains(made), "{keyed}");
     assert!(keyed.contains("name = \"key\"") && keyed.contains("x_mm = [3.8"), "{keyed}");
     let chamfered = make("--plug 8x4x8 --chamfer-mm 0.5", "chamfered.toml");
     assert!(chamfered.contains("shape = \"hull\""), "{chamfered}");
-    optimize_line("task new a --plug 8x4x8 --clearance 0.1 --key 2x1")
-        .fails(2, &["--key", "--plug"]);
-    optimize_line("task new a --round 8x12 --clearance 0.1 --chamfer-mm 0.5")
-        .fails(2, &["--chamfer-mm", "--round"]);
-    optimize_line("task new a --round 8x12 --clearance 0.1 --key 2").fails(2, &["WIDTHxHEIGHT"]);
-    optimize_line("task new a --round 8x12 --clearance 0.1 --key 8x1")
-        .fails(2, &["narrower than the plug"]);
-    let page = studies.word("shown.html");
-    optimize_line(&format!("task show {} --html {page}", studies.word("chamfered.toml")))
-        .succeeds();
+    for (words, parts) in [
+        ("--plug 8x4x8 --key 2x1", &["--key", "--plug"][..]),
+        ("--round 8x12 --chamfer-mm 0.5", &["--chamfer-mm", "--round"]),
+        ("--round 8x12 --key 2", &["WIDTHxHEIGHT"]),
+        ("--round 8x12 --key 8x1", &["narrower than the plug"]),
+    ] {
+        optimize_line(&format!("task new a {words} --clearance 0.1")).fails(2, parts);
+    }
+    let show = |words: &str| optimize_line(&format!("task show {words}"));
+    let [chamfered, page] = ["chamfered.toml", "shown.html"].map(|name| studies.word(name));
+    show(&format!("{chamfered} --html {page}")).succeeds();
     let page = studies.read("shown.html");
     assert!(page.contains("mine: ") && page.contains("nominal start with servo"));
-    assert_eq!(
-        optimize_line(&format!("task show {}", studies.word("keyed.toml"))).succeeds(),
-        keyed
-    );
+    assert_eq!(show(&studies.word("keyed.toml")).succeeds(), keyed);
 }

@@ -1,6 +1,6 @@
 //! What version 0.5.0 wrote opens, reports and goes on.
 
-use crate::common::{Studies, lines, optimize, optimize_line, read};
+use crate::common::{self, Studies, lines, optimize, optimize_line, read};
 use calibration::identify::runs;
 use insertion::outcome::Outcome;
 use std::collections::BTreeMap;
@@ -11,17 +11,11 @@ const FIXTURE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures/v0.5.
 
 /// All files of a folder, by their path in it.
 fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
-    let mut found = BTreeMap::new();
-    for entry in std::fs::read_dir(folder).expect("a folder") {
-        let path = entry.expect("an entry").path();
-        let name = PathBuf::from(path.file_name().expect("a name"));
-        if path.is_dir() {
-            found.extend(files(&path).into_iter().map(|(below, text)| (name.join(below), text)));
-        } else {
-            found.insert(name, std::fs::read(&path).expect("a file"));
-        }
-    }
-    found
+    let of = |path: PathBuf| {
+        let text = std::fs::read(&path).expect("a file");
+        (path.strip_prefix(folder).expect("below it").to_owned(), text)
+    };
+    common::files(folder).into_iter().map(of).collect()
 }
 
 /// A copy of the fixture.
@@ -142,8 +136,7 @@ fn every_command_reads_a_cell() {
 fn measurements_and_logs_are_read() {
     let copy = copied();
     let bench = copy.word("bench.csv");
-    let checked = optimize_line(&format!("measure check {bench}"));
-    assert!(checked.succeeds().contains("1 line, no problems found"), "{}", checked.stdout);
+    optimize_line(&format!("measure check {bench}")).says(&["1 line, no problems found"]);
     let few = "--task ket8 --engine fake --no-cache --simulations 16 --samples 20 --json";
     let of = |name: &str| optimize_line(&format!("{name} {few} --measurements {bench}")).json();
     assert_eq!(of("calibrate")["tasks"][0]["leave_one_out"][0]["measured_mm"], 4.0);

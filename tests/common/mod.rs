@@ -3,6 +3,7 @@
 
 pub mod memory;
 mod ran;
+pub mod shipped;
 
 pub use ran::{Ran, read, run};
 
@@ -25,7 +26,22 @@ pub fn optimize(arguments: &[&str]) -> Ran {
 
 /// Runs a command line without spaces in its words.
 pub fn optimize_line(line: &str) -> Ran {
-    optimize(&line.split_whitespace().collect::<Vec<_>>())
+    run(command(&[]).args(line.split_whitespace()))
+}
+
+/// The same on the fake engine.
+pub fn fake(line: &str) -> Ran {
+    optimize_line(&format!("{line} --engine fake"))
+}
+
+/// First line of a table of measurements of windows on the bench.
+pub const HEAD: &str = "task,infill_density_percent,infill_direction_deg,range_mm\n";
+/// Options that make a prediction for the bench quick.
+pub const FEW: [&str; 6] = ["--task", "ket8", "--simulations", "24", "--samples", "20"];
+
+/// A number from the environment, which makes a test longer than it is by default.
+pub fn setting(name: &str, default: u64) -> u64 {
+    std::env::var(name).ok().and_then(|text| text.parse().ok()).unwrap_or(default)
 }
 
 /// Microseconds per trial: a study of 22 evaluations takes some tenths of a second, one of a thousand
@@ -44,6 +60,15 @@ pub fn end(child: Child) -> (Option<i32>, String) {
     (output.status.code(), String::from_utf8_lossy(&output.stderr).into_owned())
 }
 
+/// Sends a signal and waits for the end; gives how long that took.
+pub fn kill(mut child: Child, signal: &str) -> Duration {
+    let sent = Instant::now();
+    let id = child.id().to_string();
+    assert!(Command::new("kill").args([&format!("-{signal}"), &id]).status().is_ok());
+    child.wait().expect("it ends");
+    sent.elapsed()
+}
+
 /// Returns the answer of a study without where it is and what it took from the cache.
 pub fn answer(ran: &Ran) -> serde_json::Value {
     let mut json = ran.json();
@@ -58,6 +83,18 @@ pub fn answer(ran: &Ran) -> serde_json::Value {
 /// Number of lines of a file; 0 if it is not there.
 pub fn lines(path: &Path) -> usize {
     std::fs::read_to_string(path).unwrap_or_default().lines().count()
+}
+
+/// A path in the project.
+pub fn root(path: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
+}
+
+/// All files in a folder and below it, in no order.
+pub fn files(folder: &Path) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(folder).expect("a folder");
+    let paths = entries.map(|entry| entry.expect("an entry").path());
+    paths.flat_map(|path| if path.is_dir() { files(&path) } else { vec![path] }).collect()
 }
 
 /// A folder for one test's studies.
@@ -86,6 +123,25 @@ impl Studies {
     /// A text file below the folder.
     pub fn read(&self, name: &str) -> String {
         read(&self.dir(name))
+    }
+
+    /// A study's page.
+    pub fn page(&self, name: &str) -> String {
+        self.read(&format!("{name}/report.html"))
+    }
+
+    /// Cells of a column of a study's table.
+    pub fn column(&self, name: &str, key: &str) -> Vec<String> {
+        let mut table = csv::Reader::from_path(self.dir(name).join("evaluations.csv")).unwrap();
+        let at = table.headers().unwrap().iter().position(|header| header == key);
+        let at = at.unwrap_or_else(|| panic!("no column {key}"));
+        table.records().map(|row| row.unwrap()[at].to_owned()).collect()
+    }
+
+    /// Numbers of a column of a study's table.
+    pub fn numbers(&self, name: &str, key: &str) -> Vec<f64> {
+        let cells = self.column(name, key).into_iter();
+        cells.map(|cell| cell.parse().unwrap_or_else(|_| panic!("{key}: {cell}"))).collect()
     }
 
     /// Makes a study's report anew.
@@ -137,6 +193,39 @@ impl Studies {
         study::strip_times(&self.read(&format!("{name}/journal.jsonl")))
     }
 }
+
+/// Logs attempts of usb from these starts, mm, or probes, with fingers of these infills; gives the table of the logs.
+pub fn logged(
+    folder: &Studies,
+    below: &str,
+    fingers: [[u32; 2]; 2],
+    starts: [&str; 4],
+    more: &str,
+) -> String {
+    let mut runs = "log,infill_density_percent,infill_direction_deg,offset_mm,outcome\n".to_owned();
+    for [density, direction] in fingers {
+        for (i, offset) in starts.into_iter().enumerate() {
+            let name = format!("{below}{density}-{i}.csv");
+            let what =
+                if offset.is_empty() { "--probe".into() } else { format!("--offset-mm {offset}") };
+            let finger = format!("trial --task usb --density {density} --direction {direction}");
+            let log = folder.word(&name);
+            let found = optimize_line(&format!("{finger} {what} --json --log {log} {more}")).json();
+            let outcome = match &found["failure"] {
+                _ if offset.is_empty() => "probe".to_owned(),
+                serde_json::Value::Null => "inserted".to_owned(),
+                class => class.to_string(),
+            };
+            runs += &format!("{name},{density},{direction},{offset},{outcome}\n");
+        }
+    }
+    runs
+}
+
+/// A prior of friction alone, so that few replays are enough.
+pub const FRICTION: &str = "name = \"few\"\ndescription = \"of a test\"\n\
+    [[parameter]]\nname = \"friction\"\nsets = \"task.friction.plug_socket\"\nas = \"factor\"\n\
+    scale = \"log\"\nlow = 0.5\nhigh = 2.0\nshared = false\nsource = \"made up\"\n";
 
 /// A journal all of whose checks fit again.
 pub fn sealed(text: &str) -> String {

@@ -26,6 +26,19 @@ impl Ran {
         &self.stdout
     }
 
+    /// Fails unless the command succeeded and its standard output holds all of `parts`.
+    pub fn says(&self, parts: &[&str]) {
+        for part in parts {
+            assert!(self.succeeds().contains(part), "`{part}` is not in: {}", self.stdout);
+        }
+    }
+
+    /// The same, of standard output without the ends of its lines, at which long ones are wrapped.
+    pub fn says_in_any_lines(&self, part: &str) {
+        let words: Vec<&str> = self.succeeds().split_whitespace().collect();
+        assert!(words.join(" ").contains(part), "`{part}` is not in: {}", self.stdout);
+    }
+
     /// Standard output as JSON.
     pub fn json(&self) -> serde_json::Value {
         serde_json::from_str(self.succeeds()).expect("JSON on standard output")

@@ -9,6 +9,7 @@ mod mutation;
 mod process;
 mod subject;
 
+use crate::common::setting;
 use mutation::mutations;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, TestCaseError, TestError, TestRng, TestRunner};
@@ -21,10 +22,6 @@ use subject::{Base, KINDS};
 const SECONDS: u64 = 30;
 /// Failures after which it stops.
 const MOST_FAILURES: usize = 20;
-
-fn setting(name: &str, default: u64) -> u64 {
-    std::env::var(name).ok().and_then(|text| text.parse().ok()).unwrap_or(default)
-}
 
 /// How many cases of each kind ended how.
 type Counts = BTreeMap<(&'static str, &'static str), u64>;

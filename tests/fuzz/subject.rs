@@ -117,9 +117,9 @@ pub fn run_case(kind: &str, mutations: &[Mutation], number: u64, base: &Base) ->
             let finger = changed("fingers")?;
             ended(&format!("finger --json --density 20 --direction 10 --finger {finger}"))
         }
-        "config" => kept("study.toml", &|text| mutated(text, mutations), base, &out),
-        "journal" => kept("journal.jsonl", &|text| mutated(text, mutations), base, &out),
-        "walk" => kept("walk.json", &|text| mutated(text, mutations), base, &out),
+        "config" => kept("study.toml", mutations, base, &out),
+        "journal" => kept("journal.jsonl", mutations, base, &out),
+        "walk" => kept("walk.json", mutations, base, &out),
         "ask-tell" => talk(mutations, number),
         "command-line" => command_line(mutations, number, dir.path()),
         "trial" => {
@@ -158,19 +158,14 @@ pub fn run_case(kind: &str, mutations: &[Mutation], number: u64, base: &Base) ->
             fs::write(&paths[0], &bodies[1 - changed])?;
             paths[changed] = file(&bodies[changed], "changed.obj")?;
             let [plug, socket] = paths;
-            ended(&format!(
-                "task import --engine fake --json --plug {plug} \
-                 --socket {socket} --out {folder}/task.toml"
-            ))
+            ended(&format!("{IMPORT} --plug {plug} --socket {socket} --out {folder}/task.toml"))
         }
         "mesh-size" => {
             let plug = format!("{folder}/plug.stl");
             fs::write(&plug, lathe(3 + number % 400, 1 + number / 400 % 100))?;
             let socket = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/meshes/keyed-socket.stl");
-            ended(&format!(
-                "task import --engine fake --json --unit mm --plug {plug} \
-                 --socket {socket} --out {folder}/task.toml"
-            ))
+            let files = format!("--plug {plug} --socket {socket} --out {folder}/task.toml");
+            ended(&format!("{IMPORT} --unit mm {files}"))
         }
         "worker" => damaged_results(mutations, &out),
         other => bail!("no kind is called {other}"),
@@ -201,10 +196,9 @@ fn lathe(flats: usize, rings: usize) -> String {
 /// A study whose results are damaged on the way: a damaged one is refused.
 fn damaged_results(mutations: &[Mutation], out: &Path) -> How {
     let line = "--task usb --engine fake --budget 3".split(' ');
-    let mut request: study::Request =
-        parse(line).map_err(|failure| anyhow::anyhow!("{failure}"))?;
-    request.out = Some(out.to_owned());
     let failed = |failure: Failure| anyhow::anyhow!("{failure}");
+    let mut request: study::Request = parse(line).map_err(failed)?;
+    request.out = Some(out.to_owned());
     let mut guided = request.open(None).and_then(AskTellStudy::new).map_err(failed)?;
     let mut how = "accepted";
     loop {
@@ -238,6 +232,8 @@ fn damaged_results(mutations: &[Mutation], out: &Path) -> How {
 /// As little of it as there may be, of the formula in place of an engine.
 const CALIBRATE: &str =
     "calibrate --task usb --engine fake --simulations 16 --samples 20 --no-cache --json";
+
+const IMPORT: &str = "task import --engine fake --json";
 
 fn ended(line: &str) -> How {
     judged(&line.split_whitespace().map(str::to_owned).collect::<Vec<_>>())
@@ -277,7 +273,7 @@ fn drawing(path: &Path) -> Result<()> {
 }
 
 /// A study's folder in which one file was changed.
-fn kept(name: &str, change: &dyn Fn(&str) -> Vec<u8>, base: &Base, out: &Path) -> How {
+fn kept(name: &str, mutations: &[Mutation], base: &Base, out: &Path) -> How {
     let from = base.study.path().join("study");
     fs::create_dir_all(out.join("inputs"))?;
     for folder in ["", "inputs"] {
@@ -288,7 +284,7 @@ fn kept(name: &str, change: &dyn Fn(&str) -> Vec<u8>, base: &Base, out: &Path) -
         }
     }
     let path = out.join(name);
-    fs::write(&path, change(&fs::read_to_string(&path)?))?;
+    fs::write(&path, mutated(&fs::read_to_string(&path)?, mutations))?;
     let how = ended(&format!("report {}", out.display()))?;
     drawing(&out.join("convergence.svg"))?;
     if ended(&format!("resume --quiet --json {}", out.display()))? == "accepted" {

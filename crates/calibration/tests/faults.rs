@@ -164,6 +164,9 @@ fn swapped(table: &mut Table, pairs: &[[usize; 2]]) {
     table.iter_mut().for_each(|row| pairs.iter().for_each(|&[a, b]| row.swap(a, b)));
 }
 
+/// What is said of forces in a larger unit.
+const TOO_SMALL: [&str; 2] = ["the forces look too small", "in another unit than newtons"];
+
 /// A fault, and words of a remark or an error with its likely cause, of which one is enough.
 const FAULTS: [(&str, Change, &[&str]); 26] = [
     (
@@ -173,16 +176,8 @@ const FAULTS: [(&str, Change, &[&str]); 26] = [
     ),
     ("positions in metres", |t| scaled(t, &[1, 2, 3], 1e-3), &["look like metres"]),
     ("all positions in metres", |t| scaled(t, &[1, 2, 3, 8, 9, 10], 1e-3), &["look like metres"]),
-    (
-        "kgf",
-        |t| scaled(t, &[5, 6, 7], 1.0 / 9.80665),
-        &["the forces look too small", "in another unit than newtons"],
-    ),
-    (
-        "force / 10",
-        |t| scaled(t, &[5, 6, 7], 0.1),
-        &["the forces look too small", "in another unit than newtons"],
-    ),
+    ("kgf", |t| scaled(t, &[5, 6, 7], 1.0 / 9.80665), &TOO_SMALL),
+    ("force / 10", |t| scaled(t, &[5, 6, 7], 0.1), &TOO_SMALL),
     ("force * 10", |t| scaled(t, &[5, 6, 7], 10.0), &["the forces look too large"]),
     ("mN", |t| scaled(t, &[5, 6, 7], 1e3), &["millinewtons", "too large"]),
     ("force upside down", |t| scaled(t, &[5, 6, 7], -1.0), &["force_sign"]),
@@ -214,12 +209,10 @@ const FAULTS: [(&str, Change, &[&str]); 26] = [
     (
         "two attempts",
         |t| {
-            let first = t.clone();
-            let last = first[first.len() - 1][0] + 0.002;
-            t.extend(first.into_iter().map(|mut row| {
-                row[0] += last;
-                row
-            }));
+            let mut second = t.clone();
+            let last = t[t.len() - 1][0] + 0.002;
+            second.iter_mut().for_each(|row| row[0] += last);
+            t.extend(second);
         },
         &["two attempts"],
     ),
@@ -238,11 +231,8 @@ fn said(
         let mut table: Table = rows.lines().map(row).collect();
         change(&mut table);
         let line = |row: &Vec<f64>| row.iter().map(f64::to_string).collect::<Vec<_>>().join(",");
-        let text = [header.to_owned()]
-            .into_iter()
-            .chain(table.iter().map(line))
-            .collect::<Vec<_>>()
-            .join("\n");
+        let rows: Vec<String> = table.iter().map(line).collect();
+        let text = format!("{header}\n{}", rows.join("\n"));
         let log =
             read::parse(&text, &format!("{i}.csv"), None).map_err(|fault| fault.to_string())?;
         let design = one.design.clone();
@@ -258,12 +248,7 @@ fn said(
         seed: 0,
         stop: &NEVER,
     };
-    Ok(identification
-        .remarks("runs.csv")
-        .unwrap()
-        .iter()
-        .map(|remark| remark.to_string())
-        .collect())
+    Ok(identification.remarks("runs.csv").unwrap().iter().map(ToString::to_string).collect())
 }
 
 #[test]

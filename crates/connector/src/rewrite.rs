@@ -133,19 +133,25 @@ mod tests {
     use input::shipped::TASKS;
     use insertion::task::Task;
 
+    /// Writes a family's strategy into a task and asserts that it is read again; returns text and task.
+    fn arrives(text: &str, family: Family) -> (String, Task) {
+        let after = family.strategy_for(&Task::parse(text, "own").unwrap()).unwrap();
+        let written = with_strategy(text, &after).unwrap();
+        let read = Task::parse(&written, "written").unwrap();
+        assert!((read.strategy.tilt - after.tilt).abs() < 1e-6, "{written}");
+        for (read, after) in read.strategy.phases.iter().zip(&after.phases) {
+            let off = (0..3).map(|i| (read.displacement[i] - after.displacement[i]).abs());
+            assert!(off.fold(0.0, f64::max) < 1e-7, "{written}");
+        }
+        (written, read)
+    }
+
     #[test]
     fn a_changed_file_has_the_new_strategy_the_old_values_and_all_comments() {
         for file in TASKS {
             let task = Task::parse(file.text, file.file).unwrap();
             for family in Family::all() {
-                let after = family.strategy_for(&task).unwrap();
-                let written = with_strategy(file.text, &after).unwrap();
-                let read = Task::parse(&written, "written").unwrap().strategy;
-                assert!((read.tilt - after.tilt).abs() < 1e-6);
-                for (read, after) in read.phases.iter().zip(&after.phases) {
-                    let off = (0..3).map(|i| (read.displacement[i] - after.displacement[i]).abs());
-                    assert!(off.fold(0.0, f64::max) < 1e-7, "{}", file.name);
-                }
+                let (written, _) = arrives(file.text, family);
                 let comments = file.text.lines().filter_map(|line| line.split_once('#'));
                 for (_, comment) in comments {
                     assert!(written.contains(comment.trim()), "{}: {comment}", file.name);
@@ -169,15 +175,7 @@ mod tests {
         let mut fields: toml::Table = toml::from_str(file.text).unwrap();
         let strategy = fields.remove("strategy").unwrap();
         let text = format!("strategy = {strategy}\n{fields}");
-        let task = Task::parse(&text, "own").unwrap();
-        let after = Family::Peg.strategy_for(&task).unwrap();
-        let written = with_strategy(&text, &after).unwrap();
-        let read = Task::parse(&written, "written").unwrap();
-        assert!((read.strategy.tilt - after.tilt).abs() < 1e-6, "{written}");
-        let off = read.strategy.phases.iter().zip(&after.phases).map(|(read, after)| {
-            (0..3).map(|i| (read.displacement[i] - after.displacement[i]).abs()).fold(0.0, f64::max)
-        });
-        assert!(off.fold(0.0, f64::max) < 1e-7, "{written}");
+        arrives(&text, Family::Peg);
     }
 
     #[test]
@@ -185,15 +183,12 @@ mod tests {
         let [file, ..] = TASKS else { panic!() };
         let text = file.text.replace("name = \"side\"", "name = \"along\"");
         let text = text.replacen("tilt_deg = 5.0", "start = \"taught\"\ntilt_deg = 5.0 # mine", 1);
-        let task = Task::parse(&text, "own").unwrap();
-        let after = Family::Peg.strategy_for(&task).unwrap();
-        let written = with_strategy(&text, &after).unwrap();
-        let read = Task::parse(&written, "written").unwrap();
+        let (written, read) = arrives(&text, Family::Peg);
         assert_eq!(read.strategy.phases.len(), 6);
         assert_eq!(read.strategy.rule, insertion::task::StartRule::Given);
         for said in ["# name = \"along\"", "# start was \"taught\"", "# mine"] {
             assert!(written.contains(said), "{said} in {written}");
         }
-        assert_eq!(read.success, task.success);
+        assert_eq!(read.success, Task::parse(&text, "own").unwrap().success);
     }
 }

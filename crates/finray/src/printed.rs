@@ -241,9 +241,7 @@ mod tests {
             ("tilt_deg = 10.0", "tilt_deg = -1.0", ["mount.tilt_deg", "0 or above"]),
         ] {
             let error = error(from, to);
-            for part in parts.into_iter().chain([FILE]) {
-                assert!(error.contains(part), "{error}");
-            }
+            assert!(parts.into_iter().chain([FILE]).all(|part| error.contains(part)), "{error}");
         }
     }
 }

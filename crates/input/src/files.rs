@@ -313,10 +313,8 @@ mod tests {
         let mut table = LockedFile::open(&path, LARGEST_INPUT).unwrap();
         let other = dir.path().join("table.csv.before");
         fs::write(&other, "older").unwrap();
-        assert!(
-            table.replace("another beginning\n").is_err(),
-            "an existing backup is not overwritten"
-        );
+        let replaced = table.replace("another beginning\n");
+        assert!(replaced.is_err(), "an existing backup is not overwritten");
         assert_eq!(fs::read_to_string(&other).unwrap(), "older");
         fs::remove_file(other).unwrap();
         table.replace("another beginning\n").unwrap();

@@ -277,9 +277,8 @@ mod tests {
         assert_eq!(error.place().line, Some(2));
         let text = error.to_string();
         assert!(text.ends_with("expected `plug_socket`; did you mean `plug_socket`?"), "{text}");
-        assert!(
-            !read::<Friction>("other = 0.3", "task.toml").unwrap_err().to_string().contains("mean")
-        );
+        let error = read::<Friction>("other = 0.3", "task.toml").unwrap_err().to_string();
+        assert!(!error.contains("mean"), "{error}");
     }
 
     #[derive(Debug, serde::Deserialize)]

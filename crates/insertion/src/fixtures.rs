@@ -1,5 +1,7 @@
 //! Shipped inputs, fingers and predictions for tests.
 
+use crate::evaluation::template::Template;
+use crate::evaluation::uncertainty::Uncertainty;
 use crate::finger::Finger;
 use crate::finger::file::FingerFile;
 use crate::robot::Robot;
@@ -7,12 +9,17 @@ use crate::surrogate::{Estimate, Prediction};
 use crate::task::Task;
 use crate::trial::run::EngineRig;
 use contact::direct::Direct;
-use input::shipped::{FINGERS, ROBOTS, Shipped, TASKS};
+use input::shipped::{FINGERS, ROBOTS, Shipped, TASKS, UNCERTAINTIES};
 use input::units::N_PER_MM;
 
 /// Returns the text of a shipped task and its path.
 pub fn task_file(name: &str) -> &'static Shipped {
     TASKS.iter().find(|file| file.name == name).unwrap()
+}
+
+/// Returns the text of a shipped robot and its path.
+pub fn robot_file(name: &str) -> &'static Shipped {
+    ROBOTS.iter().find(|file| file.name == name).unwrap()
 }
 
 pub fn task(name: &str) -> Task {
@@ -21,12 +28,31 @@ pub fn task(name: &str) -> Task {
 }
 
 pub fn robot(name: &str) -> Robot {
-    let file = ROBOTS.iter().find(|file| file.name == name).unwrap();
+    let file = robot_file(name);
     Robot::parse(file.text, file.file).unwrap()
 }
 
 pub fn finger_file() -> FingerFile {
     FingerFile::parse(FINGERS[0].text, FINGERS[0].file).unwrap()
+}
+
+/// Returns a shipped task whose numbers can be set.
+pub fn template(name: &str) -> Template {
+    let file = task_file(name);
+    Template::parse(file.text, file.file).unwrap()
+}
+
+/// Returns the shipped uncertainty.
+pub fn typical() -> Uncertainty {
+    Uncertainty::parse(UNCERTAINTIES[0].text, "typical").unwrap()
+}
+
+/// Asserts that it is refused with an error that has all these parts.
+pub fn refused<T>(result: Result<T, impl ToString>, parts: &[&str]) {
+    let error = result.err().unwrap_or_else(|| panic!("accepted: {parts:?}")).to_string();
+    for part in parts {
+        assert!(error.contains(part), "`{part}` is not in: {error}");
+    }
 }
 
 /// Returns a finger of these stiffnesses, N/mm.

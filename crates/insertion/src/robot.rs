@@ -156,12 +156,13 @@ struct Rigid {}
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fixtures::{refused, robot_file};
     use input::shipped::ROBOTS;
     use input::{Place, Placed};
 
     #[test]
     fn implausible_numbers_and_names_are_refused() {
-        let servo = ROBOTS.iter().find(|robot| robot.name == "servo").unwrap();
+        let servo = robot_file("servo");
         let line = |key: &str| servo.text.lines().find(|line| line.starts_with(key)).unwrap();
         for (key, value, problem) in [
             ("mass_kg", "1e9", "must lie in 0.001 .. 1000"),
@@ -179,10 +180,9 @@ mod tests {
             assert!(error.starts_with(&format!("r.toml: {key}: ")), "{error}");
             assert!(error.contains(problem), "{key} = {value}: {error}");
         }
-        let arm = ROBOTS.iter().find(|robot| robot.name == "ur5e").unwrap();
-        let text = arm.text.replace("link_mass_kg = 3.7", "link_mass_kg = 3700");
-        let error = Robot::parse(&text, "r.toml").unwrap_err().to_string();
-        assert!(error.contains("joint \"shoulder pan\" link_mass_kg: is 3700"), "{error}");
+        let heavy = robot_file("ur5e").text.replace("link_mass_kg = 3.7", "link_mass_kg = 3700");
+        let problem = "joint \"shoulder pan\" link_mass_kg: is 3700";
+        refused(Robot::parse(&heavy, "r.toml"), &[problem]);
     }
 
     #[test]

@@ -14,6 +14,11 @@ pub(super) fn window(steps: [OffsetStep; 2], ends: [FailureClass; 2]) -> Window 
     Window { nominal, negative_steps, positive_steps, end_negative, end_positive }
 }
 
+/// The closed form under a name.
+pub(super) fn setting(name: &str, search: Search) -> Setting {
+    Setting { name: name.into(), rig: Arc::new(FakeRig::default()), search }
+}
+
 fn jammed(negative: OffsetStep, positive: OffsetStep) -> Window {
     window([negative, positive], [FailureClass::Jammed; 2])
 }
@@ -52,11 +57,6 @@ fn the_representative_designs_span_the_measured_stiffness() {
 #[test]
 fn every_way_but_the_first_makes_a_pair_and_the_table_fits_a_terminal() {
     let task = Task::parse(TASKS[0].text, TASKS[0].file).unwrap();
-    let setting = |name: &str, search| Setting {
-        name: name.into(),
-        rig: Arc::new(FakeRig::default()),
-        search,
-    };
     let settings = vec![
         setting("walk", Search::Walk),
         setting("strides", Search::Strides),
@@ -72,9 +72,7 @@ fn every_way_but_the_first_makes_a_pair_and_the_table_fits_a_terminal() {
     let row =
         &pairs::json(&[pair(jammed(-34, 14))], Some(1), "finer", ["production", "refined"])[0];
     assert_eq!((&row["finer"], &row["passed"]), (&"half the step".into(), &true.into()));
-    assert_eq!(
-        (&row["refined"]["negative_mm"], &row["refined"]["failure_negative"]),
-        (&(-3.4).into(), &3.into())
-    );
+    assert_eq!(row["refined"]["negative_mm"], -3.4);
+    assert_eq!(row["refined"]["failure_negative"], 3);
     assert_eq!(row["infill_density_percent"], 10.0);
 }

@@ -238,18 +238,15 @@ mod tests {
             let bound = gp.bound(&[x]);
             assert!((bound.0 - mean).abs() < 1e-12 && bound.1 >= variance);
             let sloped = gp.posterior_gradient(&[x]);
-            assert!(
-                (sloped.mean - mean).abs() < 1e-12 && (sloped.variance - variance).abs() < 1e-12
-            );
+            assert!((sloped.mean - mean).abs() < 1e-12);
+            assert!((sloped.variance - variance).abs() < 1e-12);
             let (up, down) = (at(x + 1e-5), at(x - 1e-5));
             for (slope, up, down) in
                 [(sloped.mean_slope[0], up.0, down.0), (sloped.variance_slope[0], up.1, down.1)]
             {
                 let expected = (up - down) / 2e-5;
-                assert!(
-                    (slope - expected).abs() < 1e-4 * (1.0 + expected.abs()),
-                    "{slope} {expected}"
-                );
+                let tolerance = 1e-4 * (1.0 + expected.abs());
+                assert!((slope - expected).abs() < tolerance, "{slope} {expected}");
             }
         }
     }

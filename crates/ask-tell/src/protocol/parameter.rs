@@ -149,18 +149,14 @@ mod tests {
             for (k, value) in some.zip(values) {
                 let documented = low + f64::from(k) * axis.step_width();
                 let ulp = documented.abs().next_up() - documented.abs();
-                assert!(
-                    (value - documented).abs() <= (3.0 * ulp).max(1.1e-6 * axis.step_width()),
-                    "{value}"
-                );
+                let tolerance = (3.0 * ulp).max(1.1e-6 * axis.step_width());
+                assert!((value - documented).abs() <= tolerance, "{value}");
                 assert_eq!(axis.level(value), Ok(k), "{low} {value}");
             }
         }
         let whole = parameter(0.0, 9.0, Some(3.0));
-        assert_eq!(
-            [6.0, 5.0, -3.0, 12.0].map(|v| whole.level(v).ok()),
-            [Some(2), None, None, None]
-        );
+        let levels = [6.0, 5.0, -3.0, 12.0].map(|value| whole.level(value).ok());
+        assert_eq!(levels, [Some(2), None, None, None]);
     }
 
     #[test]

@@ -42,6 +42,11 @@ fn rectangle([x, y]: [f64; 2], [a, b]: [f64; 2]) -> Vec<[f64; 2]> {
     vec![[x - a, y - b], [x + a, y - b], [x + a, y + b], [x - a, y + b]]
 }
 
+/// Walls about an opening, mm.
+fn tube(at: [f64; 2], outer: [f64; 2], inner: [f64; 2], range: [f64; 2]) -> Mesh {
+    ring(&rectangle(at, outer), &rectangle(at, inner), range)
+}
+
 fn block(at: [f64; 2], size: [f64; 2], range: [f64; 2]) -> Mesh {
     solid(&rectangle(at, size), range)
 }
@@ -85,7 +90,7 @@ fn peg(size: [f64; 2]) -> Mesh {
 }
 
 fn hole(outer: [f64; 2], inner: [f64; 2], depth: f64) -> Mesh {
-    let walls = ring(&rectangle([0.0; 2], outer), &rectangle([0.0; 2], inner), [4.0 - depth, 4.0]);
+    let walls = tube([0.0; 2], outer, inner, [4.0 - depth, 4.0]);
     [walls, block([0.0; 2], outer, [-3.0, 4.0 - depth])].concat()
 }
 
@@ -102,8 +107,7 @@ fn peg_rests_in_its_hole() {
 fn plug_goes_round_a_post() {
     let socket =
         [block([0.0; 2], [8.0, 7.0], [-2.0, 0.0]), block([0.0; 2], [3.0, 2.0], [0.0, 5.0])];
-    let plug =
-        ring(&rectangle([0.0; 2], [5.0, 4.2]), &rectangle([0.0; 2], [3.12, 2.08]), [0.0, 4.0]);
+    let plug = tube([0.0; 2], [5.0, 4.2], [3.12, 2.08], [0.0, 4.0]);
     let plug = [plug, block([0.0; 2], [5.0, 4.2], [5.5, 8.0])].concat();
     let (mate, _) = found(&plug, &socket.concat(), 7);
     close(&mate, [0.0, 0.0, 1.0], [0.12, 0.08]);
@@ -112,7 +116,7 @@ fn plug_goes_round_a_post() {
 /// A washer on a rod four times as long, square, so that one mate of eight is as good as any.
 #[test]
 fn ring_goes_round_a_post_longer_than_itself() {
-    let plug = ring(&rectangle([0.0; 2], [9.0, 8.0]), &rectangle([0.0; 2], [4.2, 3.3]), [0.0, 5.0]);
+    let plug = tube([0.0; 2], [9.0, 8.0], [4.2, 3.3], [0.0, 5.0]);
     let mut socket = block([0.0; 2], [16.0, 16.0], [-4.0, 0.0]);
     socket.extend(block([0.0; 2], [4.0, 3.0], [0.0, 20.0]));
     let (mate, count) = found(&plug, &socket, 3);
@@ -125,9 +129,9 @@ fn ring_goes_round_a_post_longer_than_itself() {
 fn deep_bore_counts_more_than_a_tight_recess() {
     let (bore, recess) = ([0.0; 2], [8.0, 0.0]);
     let socket = [
-        ring(&rectangle(bore, [8.0, 8.0]), &rectangle(bore, [5.4, 4.4]), [-30.0, 0.0]),
+        tube(bore, [8.0, 8.0], [5.4, 4.4], [-30.0, 0.0]),
         block(bore, [8.0, 8.0], [-34.0, -30.0]),
-        ring(&rectangle(recess, [8.0, 8.0]), &rectangle(recess, [3.2, 2.2]), [-1.2, 0.0]),
+        tube(recess, [8.0, 8.0], [3.2, 2.2], [-1.2, 0.0]),
         block(recess, [8.0, 8.0], [-34.0, -1.2]),
     ];
     let (mate, _) = found(&block(bore, [3.0, 2.0], [-30.0, 10.0]), &socket.concat(), 5);
@@ -136,8 +140,7 @@ fn deep_bore_counts_more_than_a_tight_recess() {
 
 #[test]
 fn a_through_hole_has_no_stop() {
-    let socket =
-        ring(&rectangle([0.0; 2], [7.0, 6.0]), &rectangle([0.0; 2], [3.1, 2.1]), [0.0, 4.0]);
+    let socket = tube([0.0; 2], [7.0, 6.0], [3.1, 2.1], [0.0, 4.0]);
     let (mate, _) = found(&block([0.0; 2], [3.0, 2.0], [0.0, 12.0]), &socket, 2);
     assert!(mate.through, "{mate:?}");
     // Either side is as good.
@@ -148,8 +151,7 @@ fn a_through_hole_has_no_stop() {
 #[test]
 fn header_mates_by_its_shroud_and_not_a_pitch_beside_it() {
     let places = || (0..5).flat_map(|i| [-1.27, 1.27].map(|y| [2.54 * f64::from(i) - 5.08, y]));
-    let mut socket =
-        ring(&rectangle([0.0; 2], [16.0, 9.0]), &rectangle([0.0; 2], [13.2, 5.6]), [0.0, 8.0]);
+    let mut socket = tube([0.0; 2], [16.0, 9.0], [13.2, 5.6], [0.0, 8.0]);
     socket.extend(block([0.0; 2], [16.0, 9.0], [-2.0, 0.0]));
     places().for_each(|at| socket.extend(block(at, [0.64; 2], [0.0, 6.0])));
     // The housing is a grid of bars about its holes.
@@ -208,8 +210,7 @@ fn stamped_shell_with_seam_and_windows_mates_round_a_tongue() {
     for x in [-4.2, 0.0, 4.2] {
         socket.extend(block([x, 1.45], [0.6, 0.3], [2.0, 3.5]));
     }
-    let mut plug =
-        ring(&rectangle([0.0; 2], [8.9, 2.5]), &rectangle([0.0; 2], [6.9, 0.9]), [0.0, 5.0]);
+    let mut plug = tube([0.0; 2], [8.9, 2.5], [6.9, 0.9], [0.0, 5.0]);
     plug.extend(block([0.0; 2], [8.9, 2.5], [5.0, 9.0]));
     let (mate, count) = found(&plug, &socket, 9);
     close(&mate, [0.0, 0.0, 0.0], [0.1, 0.1]);
@@ -256,10 +257,9 @@ fn assembled_plug_leaves_upward() {
 /// Five bodies of a plug, a label and three of a socket, in contact with one another within each and at the seat.
 #[test]
 fn bodies_of_a_plug_are_told_from_those_of_its_socket() {
-    let outline = |size: [f64; 2]| rectangle([0.0; 2], size);
-    let holed = |low: f64, high: f64| ring(&outline([3.0, 2.0]), &outline([1.0, 0.8]), [low, high]);
+    let holed = |low: f64, high: f64| tube([0.0; 2], [3.0, 2.0], [1.0, 0.8], [low, high]);
     let socket = [
-        ring(&outline([6.0, 5.0]), &outline([3.1, 2.1]), [0.0, 4.0]),
+        tube([0.0; 2], [6.0, 5.0], [3.1, 2.1], [0.0, 4.0]),
         block([0.0; 2], [6.0, 5.0], [-1.0, 0.0]),
         block([0.0; 2], [9.0, 8.0], [-2.5, -1.0]),
     ];
@@ -284,12 +284,9 @@ fn bodies_of_a_plug_are_told_from_those_of_its_socket() {
 
 #[test]
 fn parts_that_do_not_fit_are_refused() {
-    let refused = mates(
-        &block([0.0; 2], [5.0, 4.0], [0.0, 6.0]),
-        &block([0.0; 2], [6.0; 2], [0.0, 3.0]),
-        &NEVER,
-    );
-    assert_eq!(refused, Err(MatingError::NoFit));
+    let [plug, socket] =
+        [([5.0, 4.0], 6.0), ([6.0; 2], 3.0)].map(|(size, high)| block([0.0; 2], size, [0.0, high]));
+    assert_eq!(mates(&plug, &socket, &NEVER), Err(MatingError::NoFit));
     assert_eq!(mates(&[], &peg([2.0; 2]), &NEVER), Err(MatingError::Empty("plug")));
     let stop = AtomicBool::new(true);
     let stopped = mates(&peg([2.0; 2]), &hole([5.0; 2], [2.1; 2], 4.0), &stop);
@@ -313,8 +310,8 @@ fn random_sockets_of_one_to_three_holes() {
             // Prongs of different size, so that there is one order.
             let (x, size) = (4.5 * i as f64, [1.4 + 0.5 * i as f64, width]);
             plug.extend(block([x, 0.0], size, [-depth, 0.0]));
-            let inner = rectangle([x, 0.0], [size[0] + clearance[0], size[1] + clearance[1]]);
-            socket.extend(ring(&rectangle([x, 0.0], [4.5, 5.0]), &inner, [-depth, 0.0]));
+            let inner = [0, 1].map(|axis| size[axis] + clearance[axis]);
+            socket.extend(tube([x, 0.0], [4.5, 5.0], inner, [-depth, 0.0]));
         }
         let middle = 2.25 * (count - 1) as f64;
         plug.extend(block([middle, 0.0], [4.5 * count as f64 + 1.0, 5.5], [0.0, 3.0]));

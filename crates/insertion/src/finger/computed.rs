@@ -98,6 +98,7 @@ const ACROSS: [usize; 3] = [0, 4, 5];
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fixtures::{finger_file, refused};
     use nalgebra::Vector3;
 
     const SHOULDER: f64 = 3.5 * MM;
@@ -118,7 +119,7 @@ mod tests {
     ) -> Result<Finger, FingerError> {
         let (plane, across) = stiffness(8.0 * MM, -2.0 * MM, 2.5);
         super::finger(
-            &crate::fixtures::finger_file().finger,
+            &finger_file().finger,
             plane,
             across,
             SHOULDER,
@@ -168,15 +169,8 @@ mod tests {
     #[test]
     fn a_centre_too_far_away_for_the_stiffness_is_rejected() {
         let overrides = Overrides { rcc: Some(40.0 * MM), tilting: None };
-        let error = finger(AT_PAD, overrides).unwrap_err().to_string();
-        for part in ["finray9", "2.60 N/mm", "compliance", "39.0 mm", "2.50 N m/rad", "rcc_mm"] {
-            assert!(error.contains(part), "{error}");
-        }
-        assert!(
-            finger([AT_PAD[0], 1e6], Overrides::default())
-                .unwrap_err()
-                .to_string()
-                .contains("assembly")
-        );
+        let parts = ["finray9", "2.60 N/mm", "compliance", "39.0 mm", "2.50 N m/rad", "rcc_mm"];
+        refused(finger(AT_PAD, overrides), &parts);
+        refused(finger([AT_PAD[0], 1e6], Overrides::default()), &["assembly"]);
     }
 }

@@ -64,13 +64,13 @@ pub fn without_parts(text: &str) -> &str {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use input::shipped::TASKS;
+    use crate::fixtures::{refused, task_file};
 
     /// A shipped task whose socket is in a parts file is the same task; a changed parts file is refused.
     #[test]
     fn parts_beside_the_task_are_read_with_it() {
         let folder = tempfile::tempdir().unwrap();
-        let usb = TASKS.iter().find(|file| file.name == "usb").unwrap();
+        let usb = task_file("usb");
         let (from, to) =
             (usb.text.find("[[socket.part]]").unwrap(), usb.text.find("[grip]").unwrap());
         let parts = &usb.text[from..to];
@@ -78,8 +78,7 @@ mod tests {
         let text = format!("{}{}{named}", &usb.text[..from], &usb.text[to..]);
         let file = folder.path().join("usb.toml").display().to_string();
         let source = || Source { file: file.clone(), text: text.clone() };
-        let missing = with_parts(source()).unwrap_err().to_string();
-        assert!(missing.contains("usb.parts.toml"), "{missing}");
+        refused(with_parts(source()), &["usb.parts.toml"]);
         std::fs::write(folder.path().join("usb.parts.toml"), parts).unwrap();
         let read = with_parts(source()).unwrap();
         let [found, expected] =
@@ -88,6 +87,6 @@ mod tests {
         assert_eq!(without_parts(&read.text), text);
         assert_eq!(with_parts(read.clone()).unwrap(), read);
         std::fs::write(folder.path().join("usb.parts.toml"), "").unwrap();
-        assert!(with_parts(source()).unwrap_err().to_string().contains("has changed"));
+        refused(with_parts(source()), &["has changed"]);
     }
 }

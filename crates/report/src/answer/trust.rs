@@ -149,19 +149,15 @@ mod tests {
     fn the_evidence_is_the_finger_itself_if_it_was_measured_else_those_of_similar_stiffness() {
         let record = StudyRecord::load("../../tests/fixtures/study".as_ref()).unwrap();
         let mut finger = record.best().unwrap().clone();
-        let all = || published("usb");
+        let ranges = |finger: &Recorded| -> Vec<f64> {
+            nearest(published("usb"), finger).iter().map(|(_, range_mm)| *range_mm).collect()
+        };
         finger.design = Design::infill(20.0, 20.0);
-        assert_eq!(
-            nearest(all(), &finger).iter().map(|(_, range_mm)| *range_mm).collect::<Vec<_>>(),
-            [4.1]
-        );
+        assert_eq!(ranges(&finger), [4.1]);
         // This finger was not measured; designs 8 and 11 have similar stiffness.
         finger.design = Design::infill(27.0, 39.0);
         finger.stiffness = insertion::surrogate::Prediction::exact(3.65e3, 31e3);
-        assert_eq!(
-            nearest(all(), &finger).iter().map(|(_, range_mm)| *range_mm).collect::<Vec<_>>(),
-            [5.0, 5.6]
-        );
+        assert_eq!(ranges(&finger), [5.0, 5.6]);
         assert!(published("mine").is_empty());
     }
 }

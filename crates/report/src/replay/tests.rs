@@ -57,15 +57,14 @@ pub fn recording() -> Recording {
     Recording { trial, frames, decided_s: 1.0 }
 }
 
+fn film<'a>(label: &'a str, task: &'a Task, recording: &'a Recording) -> Film<'a> {
+    Film { label, task, pad: &Pad::PUBLISHED, recording }
+}
+
 #[test]
 fn a_page_contains_its_films_and_loads_nothing() {
     let (task, recording) = (task(), recording());
-    let film = Film {
-        label: "</title><script>",
-        task: &task,
-        pad: &Pad::PUBLISHED,
-        recording: &recording,
-    };
+    let film = film("</title><script>", &task, &recording);
     let page = page("\"</title><script>alert(1)</script>", &[film, film]);
     assert_eq!(page.matches("<script").count(), 2, "the data and the viewer");
     assert_eq!(page.matches("\"label\":").count(), 2);
@@ -80,8 +79,7 @@ fn the_last_frame_has_the_outcome() {
     let (task, mut recording) = (task(), recording());
     recording.decided_s = 1.000_04;
     recording.frames.last_mut().unwrap().time_s = recording.decided_s;
-    let film = Film { label: "a", task: &task, pad: &Pad::PUBLISHED, recording: &recording };
-    let json = film::data(&film);
+    let json = film::data(&film("a", &task, &recording));
     let times = json["time"].as_array().unwrap();
     assert!(times[times.len() - 1].as_f64() >= json["decided_s"].as_f64(), "{json}");
 }
@@ -96,18 +94,13 @@ fn the_table_has_a_line_per_millisecond_and_units() {
     let last: Vec<&str> = lines.last().unwrap().split(',').collect();
     assert_eq!(last.len(), header.len());
     let column = |name: &str| last[header.iter().position(|h| *h == name).unwrap()];
-    assert_eq!(
-        (column("time_s"), column("force_n"), column("depth_mm")),
-        ("1.0000", "20.0000", "10.0000")
-    );
-    assert_eq!(column("finger_plus_y_bend_y_mm"), "-0.5000");
+    let found = ["time_s", "force_n", "depth_mm", "finger_plus_y_bend_y_mm"].map(column);
+    assert_eq!(found, ["1.0000", "20.0000", "10.0000", "-0.5000"]);
 }
 
 #[test]
 fn the_axes_of_the_plot_have_units() {
     let (task, recording) = (task(), recording());
-    let svg =
-        curve_svg(&Film { label: "a", task: &task, pad: &Pad::PUBLISHED, recording: &recording })
-            .unwrap();
+    let svg = curve_svg(&film("a", &task, &recording)).unwrap();
     assert!(svg.contains("force plug to socket (N)") && svg.contains("top (mm)"));
 }

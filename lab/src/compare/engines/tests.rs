@@ -8,8 +8,6 @@ use insertion::outcome::FailureClass;
 use insertion::stiffness::designs;
 use insertion::task::Task;
 use insertion::task::finger::FingerModel;
-use insertion::trial::fake::FakeRig;
-use std::sync::Arc;
 
 fn window(negative: OffsetStep, positive: OffsetStep) -> Window {
     tests::window([negative, positive], [FailureClass::Jammed, FailureClass::PlugMissed])
@@ -29,19 +27,14 @@ fn offsets_lie_about_both_ends_and_in_the_middle() {
 
 #[test]
 fn an_engine_agrees_with_itself() {
-    let setting = |name: &str| Setting {
-        name: name.into(),
-        rig: Arc::new(FakeRig::default()),
-        search: Search::Strides,
-    };
+    let setting = |name| tests::setting(name, Search::Strides);
     let task = Task::parse(TASKS[0].text, TASKS[0].file).unwrap();
-    let tasks = [TaskSettings { task, settings: vec![setting("fake"), setting("again")] }];
+    let tasks = [TaskSettings { task, settings: ["fake", "again"].map(setting).into() }];
     let designs = [designs()[0], designs()[10]];
     let check = run(&tasks, &designs, false);
     assert_eq!((check.agreement(), check.end_difference_mm()), (1.0, Some(0.0)));
-    assert!(
-        check.passed() && check.trials.iter().all(|pair| pair.tip_mm.is_none_or(|by| by == 0.0))
-    );
+    assert!(check.passed());
+    assert!(check.trials.iter().all(|pair| pair.tip_mm.is_none_or(|by| by == 0.0)));
     // What is inside the window inserts, what is outside does not.
     let inside = |pair: &TrialPair| pair.from_end <= 0;
     let inserts = |pair: &TrialPair| pair.outcomes[0] == Outcome::Inserted;

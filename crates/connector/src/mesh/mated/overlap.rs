@@ -203,10 +203,10 @@ fn overlaps(bodies: &[Vec<Part>; 2], depth: f64, least: f64, [x, y]: [f64; 2]) -
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
 
-    fn part(min_mm: [f64; 3], max_mm: [f64; 3]) -> Part {
+    pub fn part(min_mm: [f64; 3], max_mm: [f64; 3]) -> Part {
         let [min, max] = [min_mm, max_mm].map(|p| Vector3::from(p) * MM);
         Part { name: String::new(), solid: Solid::Box { min, max }, friction: None }
     }

@@ -123,6 +123,7 @@ fn winding(triangles: &[Triangle], place: &Point3<f64>) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::overlap::tests::part;
     use super::*;
 
     fn cube() -> Vec<Triangle> {
@@ -135,11 +136,6 @@ mod tests {
         faces.iter().map(|face| face.map(|corner| corners[corner])).collect()
     }
 
-    fn part(min_mm: [f64; 3], max_mm: [f64; 3]) -> Part {
-        let [min, max] = [min_mm, max_mm].map(|p| Vector3::from(p) * MM);
-        Part { name: String::new(), solid: Solid::Box { min, max }, friction: None }
-    }
-
     #[test]
     fn a_protruding_part_and_a_bare_face_are_found() {
         let drawn = cube();
@@ -147,10 +143,8 @@ mod tests {
         assert_eq!(Drawn::new(&drawn).deviations(&drawn, &[whole]), []);
         let long = part([0.0; 3], [4.0, 4.0, 4.05]);
         let out = Drawn::new(&drawn).deviations(&drawn, &[long]);
-        assert!(
-            out.iter().any(|d| d.out.is_some_and(|far| (far - 0.05 * MM).abs() < 1e-9)),
-            "{out:?}"
-        );
+        let sticks_out = |far: f64| (far - 0.05 * MM).abs() < 1e-9;
+        assert!(out.iter().any(|d| d.out.is_some_and(sticks_out)), "{out:?}");
         let short = part([0.0; 3], [4.0, 4.0, 3.95]);
         let bare = Drawn::new(&drawn).deviations(&drawn, &[short]);
         assert!(!bare.is_empty() && bare.iter().all(|d| d.out.is_none() && d.place.z > 3.9 * MM));
@@ -158,10 +152,8 @@ mod tests {
     /// Otherwise the rounding of a file could change the solid or make it invalid.
     #[test]
     fn trimmed_corners_are_on_the_grid_of_files() {
-        let Solid::Box { min, max } = part([1.0, 1.0, 3.0], [2.0, 2.0, 4.1]).solid else {
-            panic!()
-        };
-        let trimmed = Drawn::new(&cube_of(4.000_03)).trimmed(Solid::Box { min, max }).unwrap();
+        let solid = part([1.0, 1.0, 3.0], [2.0, 2.0, 4.1]).solid;
+        let trimmed = Drawn::new(&cube_of(4.000_03)).trimmed(solid).unwrap();
         for corner in trimmed.corners() {
             let grid = corner / (1e-4 * MM);
             assert!((grid - grid.map(f64::round)).amax() < 1e-6, "{corner}");

@@ -130,19 +130,17 @@ mod tests {
     use super::*;
     use crate::evaluation::grid_mm;
     use crate::evaluation::tests::ranges;
-    use crate::fixtures::{finger, predicted};
+    use crate::fixtures::{finger, predicted, typical};
     use crate::trial::fake::{FakeRig, window_mm};
-    use input::shipped::UNCERTAINTIES;
     use input::units::MM;
 
     /// Fingers of 3 N/mm and this assembly stiffness (N/mm) drawn under the shipped errors.
     fn drawn(rig: &dyn Rig, assembly: f64, count: u32) -> (Uncertainty, Vec<Insertion<'_>>) {
-        let typical = Uncertainty::parse(UNCERTAINTIES[0].text, "typical").unwrap();
         let predicted = predicted([3.0, 1.0], [assembly, 2.0]);
         let nominal = Grasp::of(&finger(3.0, assembly));
-        let drawn = draws(&typical.errors, 5, count).into_iter();
+        let drawn = draws(&typical().errors, 5, count).into_iter();
         let drawn = drawn.map(|draw| (rig, draw.grasp(nominal, &predicted), draw.offset)).collect();
-        (typical, drawn)
+        (typical(), drawn)
     }
 
     #[test]

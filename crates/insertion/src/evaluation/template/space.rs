@@ -114,7 +114,7 @@ impl Template {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::robot::Robot;
+    use crate::fixtures::{robot, template};
     use crate::trial::run::EngineRig;
     use contact::direct::Direct;
     use input::shipped::{ROBOTS, SPACES, TASKS};
@@ -128,9 +128,7 @@ mod tests {
         };
         let text: String = infill.iter().chain(parameters).map(parameter).collect();
         let text = format!("name = 's'\ndescription = ''\n{text}");
-        let file = crate::fixtures::task_file("usb");
-        let template = Template::parse(file.text, file.file).unwrap();
-        template.check(&Space::parse(&text, "s.toml").unwrap(), "s.toml", &|_| Ok(()))
+        template("usb").check(&Space::parse(&text, "s.toml").unwrap(), "s.toml", &|_| Ok(()))
     }
 
     #[test]
@@ -138,9 +136,9 @@ mod tests {
         for space in SPACES {
             let space = Space::parse(space.text, space.file).unwrap();
             for task in TASKS {
-                let template = Template::parse(task.text, task.file).unwrap();
-                for robot in ROBOTS {
-                    let robot = Robot::parse(robot.text, robot.file).unwrap();
+                let template = template(task.name);
+                for file in ROBOTS {
+                    let robot = robot(file.name);
                     let fits = |task: &Task| {
                         let engine = Box::new(Direct::default());
                         EngineRig::new(task.clone(), &robot, engine).map(|_| ())

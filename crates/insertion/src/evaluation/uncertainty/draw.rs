@@ -147,14 +147,13 @@ fn lognormal(relative: f64, z: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evaluation::uncertainty::{Uncertainty, YawSpread};
-    use crate::fixtures::predicted;
+    use crate::evaluation::uncertainty::YawSpread;
+    use crate::fixtures::{predicted, typical};
     use ask_tell::statistics::Moments;
-    use input::shipped::UNCERTAINTIES;
     use parameters::numbers::{Kind, paths};
 
     fn errors() -> Errors {
-        Uncertainty::parse(UNCERTAINTIES[0].text, "typical").unwrap().errors
+        typical().errors
     }
 
     fn moments(values: impl Iterator<Item = f64>) -> (f64, f64) {

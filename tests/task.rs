@@ -13,7 +13,7 @@ use insertion::outcome::Outcome;
 use insertion::robot::Robot;
 use insertion::task::Task;
 use insertion::trial::run::EngineRig;
-use insertion::trial::{Rig, Trial};
+use insertion::trial::{Grasp, Rig, Trial};
 use nalgebra::Point3;
 use serde_json::Value;
 
@@ -41,7 +41,7 @@ fn rig(task: &Task) -> EngineRig {
 
 /// Nominal trial with the middle one of the measured fingers.
 fn trial(task: &Task) -> Trial {
-    rig(task).grasp(&Finger::new(3.0 * N_PER_MM, 30.0 * N_PER_MM)).trial(0.0)
+    rig(task).hold(Grasp::of(&Finger::new(3.0 * N_PER_MM, 30.0 * N_PER_MM))).trial(0.0)
 }
 
 /// Draft of a plug WxHxL, or of a round one DxL.

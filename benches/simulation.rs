@@ -16,8 +16,8 @@ use insertion::evaluation::tolerance::{self, Search};
 use insertion::finger::Finger;
 use insertion::robot::Robot;
 use insertion::task::Task;
-use insertion::trial::Rig;
 use insertion::trial::engine::EngineKind;
+use insertion::trial::{Grasp, Rig};
 use nalgebra::{Point3, Vector3};
 use std::sync::atomic::AtomicBool;
 
@@ -46,7 +46,7 @@ fn rig(task: &Task, engine: EngineKind) -> (Box<dyn Rig>, Finger) {
 
 fn trial(bencher: Bencher, task: &Task, engine: EngineKind) {
     let (rig, finger) = rig(task, engine);
-    bencher.bench(|| rig.grasp(black_box(&finger)).trial(0.0));
+    bencher.bench(|| rig.hold(Grasp::of(black_box(&finger))).trial(0.0));
 }
 
 #[divan::bench(args = TASK_NAMES, sample_count = 10, sample_size = 1)]

@@ -10,7 +10,7 @@ use input::shipped::TASKS;
 use input::units::MM;
 use insertion::outcome::Outcome;
 use insertion::task::Task;
-use insertion::trial::{Rig, Trial};
+use insertion::trial::{Grasp, Rig, Trial};
 use nalgebra::Point3;
 use serde_json::Value;
 
@@ -31,7 +31,7 @@ fn changed(text: &str, from: &str, to: &str) -> Result<Task, String> {
 
 /// Nominal trial with the middle one of the measured fingers.
 fn trial(task: &Task) -> Trial {
-    rig(task.clone(), "servo").grasp(&finger(3.0, 30.0)).trial(0.0)
+    rig(task.clone(), "servo").hold(Grasp::of(&finger(3.0, 30.0))).trial(0.0)
 }
 
 /// Draft of a plug WxHxL, or of a round one DxL.

@@ -127,7 +127,7 @@ impl Request {
             }
             _ if self.log.is_some() => rig.hold(grasp).logged(offset, STEP_S),
             (None, Some(recording)) => (recording.trial, Vec::new()),
-            (every_s, _) => rig.hold(grasp).sampled(offset, every_s),
+            (every_s, _) => rig.hold(grasp).run(offset, every_s, 0.0),
         };
         not_stopped(stop)?;
         if let Some(file) = &self.log {

@@ -96,7 +96,7 @@ impl Ended {
             return Ok(found);
         }
         let engine = &subject.provenance.engine.name;
-        let mut setup = Setup::from_inputs(&record.inputs(dir)?, engine)?;
+        let setup = Setup::from_inputs(&record.inputs(dir)?, engine)?;
         let design = &subject.design;
         let stiffness = setup.evaluator.predict(design).map_err(Failure::input)?;
         let specimen = setup.evaluator.specimen(setup.only_task()?, design, stiffness);
@@ -115,7 +115,7 @@ impl Ended {
                 subject.write(dir, MAPS, &found.maps)?;
             }
             if robots_missing {
-                found.robots = robots(&mut setup, answer, specimen, stop)?;
+                found.robots = robots(&setup, answer, specimen, stop)?;
                 subject.write(dir, ROBOTS, &found.robots)?;
             }
             Ok::<_, Failure>(())
@@ -126,10 +126,9 @@ impl Ended {
 }
 
 /// Returns the windows of the recommended finger with the study's robot and with a second one: the
-/// position-controlled arm if the study's robot is compliant, else the compliant flange. The second robot
-/// replaces that of the setup.
+/// position-controlled arm if the study's robot is compliant, else the compliant flange.
 fn robots(
-    setup: &mut Setup,
+    setup: &Setup,
     answer: &Answer,
     specimen: &Specimen,
     stop: &AtomicBool,
@@ -144,10 +143,11 @@ fn robots(
     let Some(known) = known else { return Ok(Vec::new()) };
     let own = window_with(&setup.evaluator.robot, known)?;
     let compliant = own.stiffness_n_per_mm.is_some_and(|[_, y, _]| y < COMPLIANT_N_PER_MM);
-    setup.evaluator.robot = robot(if compliant { "ur5e_position" } else { "servo" })?;
-    let (evaluator, plan) = (&setup.evaluator, &Plan::WINDOW);
-    let found = evaluator.measure_or_teach(specimen, Search::Walk, plan, stop);
+    let other = robot(if compliant { "ur5e_position" } else { "servo" })?;
+    let specimen = &Specimen { robot: other, ..specimen.clone() };
+    let plan = &Plan::WINDOW;
+    let found = setup.evaluator.measure_or_teach(specimen, Search::Walk, plan, stop);
     let found = found.map_err(Failure::input)?;
     not_stopped(stop)?;
-    Ok(vec![own, window_with(&evaluator.robot, found)?])
+    Ok(vec![own, window_with(&specimen.robot, found)?])
 }

@@ -44,11 +44,10 @@ pub fn evaluate(
         values.partition(|(input, _)| input.path.kind() == Kind::Error);
     let design =
         Design(numbers.iter().map(|(one, value)| (one.path.to_string(), *value)).collect());
-    let predicted = evaluator.predict(&design)?;
-    let specimen = evaluator.specimen(template, &design, predicted)?;
+    let specimen = evaluator.apply(template, (&design, None), &[])?;
     let rig = evaluator.rig(&specimen, evaluator.taught(&specimen, stop)?, 1.0)?;
     let draw = Draw::with(errors.iter().map(|(one, value)| (&*one.path, *value)));
-    let finger = draw.finger(&specimen.finger, &predicted);
+    let finger = draw.finger(&specimen.finger, &specimen.stiffness);
     let grasp = Grasp { finger, conditions: draw.conditions, stop };
     Ok(tolerance::evaluate_grasp(&*rig, grasp, Search::Strides))
 }

@@ -7,7 +7,6 @@ use insertion::evaluation::robustness::Plan;
 use insertion::evaluation::template::{DesignError, Template};
 use insertion::evaluation::tolerance::{self, Search};
 use insertion::outcome::Outcome;
-use insertion::robot::Robot;
 use insertion::space::Design;
 use insertion::trial::Grasp;
 use parameters::Parameter;
@@ -49,16 +48,16 @@ impl<'a> Simulation<'a> {
     pub fn window(&self, design: &Design, shares: &[f64]) -> Result<Evaluation, DesignError> {
         let values = self.parameters.iter().zip(shares).map(|(p, &share)| (*p, p.at(share)));
         let values: Vec<_> = values.collect();
-        let (specimen, robot) = self.evaluator.apply(self.template, (design, None), &values)?;
+        let specimen = self.evaluator.apply(self.template, (design, None), &values)?;
         let inserts = |found: &Evaluation| found.window.nominal == Outcome::Inserted;
-        let own = self.measure(&specimen, &robot)?;
+        let own = self.measure(&specimen)?;
         if inserts(&own) {
             return Ok(own);
         }
         for shift in SHIFTS_MM {
             let mut specimen = specimen.clone();
             specimen.task.strategy.start[1] += shift * MM;
-            let evaluation = self.measure(&specimen, &robot)?;
+            let evaluation = self.measure(&specimen)?;
             if inserts(&evaluation) {
                 return Ok(evaluation);
             }
@@ -67,16 +66,17 @@ impl<'a> Simulation<'a> {
     }
 
     /// Simulates the window of a specimen, or returns the cached one.
-    fn measure(&self, specimen: &Specimen, robot: &Robot) -> Result<Evaluation, DesignError> {
+    fn measure(&self, specimen: &Specimen) -> Result<Evaluation, DesignError> {
         let engine = self.evaluator.engine;
-        let cache = self.cache.as_ref().map(|dir| Cache::new(dir, robot, &engine.record()));
+        let new = |dir: &PathBuf| Cache::new(dir, &specimen.robot, &engine.record());
+        let cache = self.cache.as_ref().map(new);
         let search = Search::default();
         let keep =
             cache.as_ref().map(|cache| (cache, cache.key(&(specimen, search, &Plan::WINDOW))));
         if let Some(found) = keep.as_ref().and_then(|(cache, key)| cache.get(key)) {
             return Ok(found);
         }
-        let rig = engine.rig(&specimen.task, robot, &specimen.finger, 1.0)?;
+        let rig = self.evaluator.rig(specimen, None, 1.0)?;
         let grasp = Grasp { stop: self.stop, ..Grasp::of(&specimen.finger) };
         let evaluation = tolerance::evaluate_grasp(&*rig, grasp, search);
         if let Some((cache, key)) = keep

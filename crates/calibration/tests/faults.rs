@@ -106,8 +106,8 @@ fn recorded(evaluator: &Evaluator, cell: u64) -> Vec<Recorded> {
             })
             .collect();
         let infill = Design::infill(design[0], design[1]);
-        let (specimen, robot) = evaluator.apply(template, (&infill, None), &values).unwrap();
-        let rig = evaluator.engine.rig(&specimen.task, &robot, &specimen.finger, 1.0).unwrap();
+        let specimen = evaluator.apply(template, (&infill, None), &values).unwrap();
+        let rig = evaluator.rig(&specimen, None, 1.0).unwrap();
         let grasp = Grasp::of(&specimen.finger);
         let mm = |column: &str| at(row, &format!("direct_{column}_mm"));
         let starts = [mm("start"), mm("negative") + 0.2, mm("positive") + 0.2];

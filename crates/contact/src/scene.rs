@@ -1,10 +1,26 @@
 //! Scenes for any engine: bodies with convex geoms, joints with springs and servos, and the pairs
 //! of bodies that may touch, with their friction. SI units.
 
-use nalgebra::{Isometry3, Matrix6, Point3, Vector3};
+use nalgebra::{Isometry3, Matrix6, Point3, UnitQuaternion, Vector3, Vector6};
 
 /// Rigid pose, m.
 pub type Pose = Isometry3<f64>;
+
+/// Returns the translation and the rotation vector from one pose to another, world axes.
+pub fn displacement(from: &Pose, to: &Pose) -> Vector6<f64> {
+    let translation = to.translation.vector - from.translation.vector;
+    let rotation = (to.rotation * from.rotation.inverse()).scaled_axis();
+    Vector6::new(translation.x, translation.y, translation.z, rotation.x, rotation.y, rotation.z)
+}
+
+/// Returns the 6x6 matrix that rotates linear and angular velocities.
+pub fn block_rotation(rotation: &UnitQuaternion<f64>) -> Matrix6<f64> {
+    let axes = rotation.to_rotation_matrix().into_inner();
+    let mut blocks = Matrix6::zeros();
+    blocks.fixed_view_mut::<3, 3>(0, 0).copy_from(&axes);
+    blocks.fixed_view_mut::<3, 3>(3, 3).copy_from(&axes);
+    blocks
+}
 
 /// Index of a body in [`Scene::bodies`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]

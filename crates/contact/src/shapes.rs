@@ -11,13 +11,20 @@ use rapier3d_f64::parry;
 /// Unit of length for hulls, m: parry's tolerances for hulls are too wide in metres.
 const MM: f64 = 1e-3;
 
-/// Returns the closed surface of a convex shape in its frame (of a cylinder that of the prism inside it):
-/// corners, m, and triangles, counter-clockwise from outside. Empty for a hull without volume,
-/// which no checked file has.
-pub fn surface(shape: &Shape) -> (Vec<Point3<f64>>, Vec<[u32; 3]>) {
-    let points: Vec<_> = shape.corners().iter().map(|p| (p.coords / MM).into()).collect();
-    let (points, triangles) = try_convex_hull(&points).unwrap_or_default();
-    (points.into_iter().map(|p| Point3::from(Vector3::from(p) * MM)).collect(), triangles)
+/// Corners of a closed surface, m, and its triangles, counter-clockwise from outside.
+pub type Triangles = (Vec<Point3<f64>>, Vec<[u32; 3]>);
+
+/// Returns the surface of the convex hull of points; `None` if they do not span a volume.
+pub fn hull(points: &[Point3<f64>]) -> Option<Triangles> {
+    let points: Vec<_> = points.iter().map(|p| (p.coords / MM).into()).collect();
+    let (points, triangles) = try_convex_hull(&points).ok()?;
+    Some((points.into_iter().map(|p| Point3::from(Vector3::from(p) * MM)).collect(), triangles))
+}
+
+/// Returns the surface of a convex shape in its frame (of a cylinder that of the prism inside it). Empty for a hull
+/// without volume, which no checked file has.
+pub fn surface(shape: &Shape) -> Triangles {
+    hull(&shape.corners()).unwrap_or_default()
 }
 
 /// Returns parry's [`SharedShape`] of a shape, and the pose of parry's frame in the frame of the shape.
@@ -76,7 +83,7 @@ mod tests {
     use super::*;
 
     /// Six times the volume is the sum of the triangles' triple products, if all face outward.
-    fn volume((points, triangles): &(Vec<Point3<f64>>, Vec<[u32; 3]>)) -> f64 {
+    fn volume((points, triangles): &Triangles) -> f64 {
         let of = |t: &[u32; 3]| {
             let [a, b, c] = t.map(|i| points[i as usize].coords);
             a.dot(&b.cross(&c)) / 6.0

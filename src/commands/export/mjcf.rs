@@ -44,8 +44,7 @@ pub struct ExportedScene {
 impl command::Request for Request {
     fn run(&self, _context: &Context<'_>) -> Result<Output, Failure> {
         let setup = self.setup.setup()?;
-        let Specimen { task, finger, .. } = self.finger.choose(&setup)?.specimen;
-        let robot = &setup.evaluator.robot;
+        let Specimen { task, finger, robot, .. } = self.finger.choose(&setup)?.specimen;
         let mounted = robot.mount(task.turn, task.strategy.tilt).map_err(Failure::input)?;
         let scene = cell::build(&task, &mounted, &finger).scene;
         let remedy = match scene.first_patch() {

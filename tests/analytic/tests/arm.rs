@@ -3,10 +3,10 @@
 use analytic_checks::arm::{chain, flange, ur5e};
 use contact::Engine;
 use contact::direct::Direct;
-use contact::scene::{BodyId, Pose};
+use contact::scene::{BodyId, Pose, displacement};
 use input::shipped::ROBOTS;
 use input::units::{DEG, MM};
-use insertion::arm::{Angles, Arm, displacement};
+use insertion::arm::{Angles, Arm};
 use insertion::robot::{Drive, Robot};
 use nalgebra::{Matrix6, Translation3, UnitQuaternion, Vector3};
 

@@ -1,6 +1,6 @@
 //! Levers of a task and a robot, with their bounds.
 
-use super::measure::{LeverAnalysis, Setup};
+use super::measure::LeverAnalysis;
 use connector::body::{ConvexBody, width};
 use connector::seat::section;
 use input::shipped::{LEVERS, PRIORS};
@@ -77,8 +77,8 @@ fn clearance(task: &Task) -> f64 {
 }
 
 impl LeverParameter {
-    /// Returns the number and the setup at a bound, or at the feasible value nearest to it.
-    pub fn at(&self, analysis: &LeverAnalysis<'_>, end: End) -> Option<(f64, Setup)> {
+    /// Returns the number and the specimen at a bound, or at the feasible value nearest to it.
+    pub fn at(&self, analysis: &LeverAnalysis<'_>, end: End) -> Option<(f64, Specimen)> {
         let LeverAnalysis { evaluator, template, design, given, .. } = analysis;
         let changed = |to: f64| {
             let value = self.parameter.applied(self.value, to);
@@ -86,9 +86,9 @@ impl LeverParameter {
                 return None;
             }
             let set = [(&self.parameter, to)];
-            let setup = evaluator.apply(template, (design, *given), &set).ok()?;
-            evaluator.engine.rig(&setup.0.task, &setup.1, &setup.0.finger, 1.0).ok()?;
-            Some((value, setup))
+            let specimen = evaluator.apply(template, (design, *given), &set).ok()?;
+            evaluator.rig(&specimen, None, 1.0).ok()?;
+            Some((value, specimen))
         };
         farthest(&self.parameter, self.value, end, changed)
     }

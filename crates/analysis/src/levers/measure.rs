@@ -7,15 +7,12 @@ use insertion::evaluation::robustness::Plan;
 use insertion::evaluation::template::{DesignError, Template};
 use insertion::evaluation::tolerance::Search;
 use insertion::evaluation::{Evaluation, grid_mm};
-use insertion::finger::model::FingerSource;
 use insertion::outcome::Outcome;
-use insertion::robot::Robot;
 use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design, Space};
 use insertion::surrogate::Prediction;
 use insertion::task::StartRule;
 use parameters::plan::one_at_a_time::End;
 use rayon::prelude::*;
-use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 /// Largest number of windows measured.
@@ -35,9 +32,6 @@ pub struct LeverAnalysis<'a> {
     pub given: Option<Prediction>,
 }
 
-/// Specimen and robot for one window.
-pub(super) type Setup = (Specimen, Robot);
-
 /// Lever to be measured, and the index of the window of each end. An end that changes nothing has the index of the
 /// baseline.
 type Candidate = (Lever, [usize; 2]);
@@ -55,15 +49,15 @@ impl LeverAnalysis<'_> {
         stop: &AtomicBool,
     ) -> Result<Levers, DesignError> {
         let LeverAnalysis { evaluator, template, design, given, .. } = *self;
-        let mut setups = vec![evaluator.apply(template, (design, given), &[])?];
+        let mut specimens = vec![evaluator.apply(template, (design, given), &[])?];
         if infill.is_none() {
             for design in self.extremes()? {
-                setups.push(evaluator.apply(template, (&design, None), &[])?);
+                specimens.push(evaluator.apply(template, (&design, None), &[])?);
             }
         }
-        let infills = setups.len();
-        let (candidates, left_out) = self.candidates(&mut setups)?;
-        let windows = setups.par_iter().map(|(specimen, robot)| self.window(specimen, robot, stop));
+        let infills = specimens.len();
+        let (candidates, left_out) = self.candidates(&mut specimens)?;
+        let windows = specimens.par_iter().map(|specimen| self.window(specimen, stop));
         let found = windows.collect::<Result<Vec<_>, _>>()?;
         let ranges: Vec<_> = found.iter().map(range_mm).collect();
         let base = Base {
@@ -86,37 +80,37 @@ impl LeverAnalysis<'_> {
             infill: infill.unwrap_or_else(over),
             levers,
             left_out,
-            windows: setups.len(),
+            windows: specimens.len(),
         })
     }
 
     /// Returns the levers to measure and the names of those that exceed the window budget. The
-    /// setups of their ends are appended to `setups`, the first of which is the baseline.
+    /// specimens of their ends are appended to `specimens`, the first of which is the baseline.
     fn candidates(
         &self,
-        setups: &mut Vec<Setup>,
+        specimens: &mut Vec<Specimen>,
     ) -> Result<(Vec<Candidate>, Vec<String>), DesignError> {
-        let base = setups[0].clone();
+        let base = specimens[0].clone();
         let (mut candidates, mut left_out) = (Vec::new(), Vec::new());
-        for lever in lever_parameters(self, &base.0)? {
+        for lever in lever_parameters(self, &base)? {
             let (mut more, mut values, mut windows) = (Vec::new(), [lever.value; 2], [0; 2]);
             for (end, bound) in [End::Low, End::High].into_iter().enumerate() {
                 // A chamfer of 0 describes the same shape differently, which can shift a window.
                 let changed = lever.at(self, bound).filter(|(value, _)| *value != lever.value);
-                let Some((value, setup)) = changed else { continue };
-                if setup != base {
-                    (values[end], windows[end]) = (value, setups.len() + more.len());
-                    more.push(setup);
+                let Some((value, specimen)) = changed else { continue };
+                if specimen != base {
+                    (values[end], windows[end]) = (value, specimens.len() + more.len());
+                    more.push(specimen);
                 }
             }
             if more.is_empty() {
                 continue;
             }
-            if setups.len() + more.len() > MOST_WINDOWS {
+            if specimens.len() + more.len() > MOST_WINDOWS {
                 left_out.push(lever.parameter.name);
                 continue;
             }
-            setups.append(&mut more);
+            specimens.append(&mut more);
             candidates.push((lever.unmeasured(values), windows));
         }
         Ok((candidates, left_out))
@@ -141,25 +135,11 @@ impl LeverAnalysis<'_> {
         Ok([all.first(), all.last()].map(|of| of.map_or(*design, |(_, design)| design).clone()))
     }
 
-    /// Measures the window around the start taught for this setup.
-    fn window(
-        &self,
-        specimen: &Specimen,
-        robot: &Robot,
-        stop: &AtomicBool,
-    ) -> Result<Evaluation, DesignError> {
+    /// Measures the window around the start taught for a specimen.
+    fn window(&self, specimen: &Specimen, stop: &AtomicBool) -> Result<Evaluation, DesignError> {
         let mut specimen = specimen.clone();
         specimen.task.strategy.rule = StartRule::Taught;
-        // The specimen already has its finger and its task.
-        let evaluator = Evaluator {
-            surrogate: Arc::clone(&self.evaluator.surrogate),
-            fingers: FingerSource::Paper,
-            templates: Vec::new(),
-            robot: robot.clone(),
-            engine: self.evaluator.engine,
-            cell: None,
-        };
-        evaluator.measure(&specimen, Search::default(), &Plan::WINDOW, stop)
+        self.evaluator.measure(&specimen, Search::default(), &Plan::WINDOW, stop)
     }
 }
 

@@ -154,9 +154,9 @@ impl Identification<'_> {
         let Identification { evaluator, template, .. } = self;
         let mut all = Vec::with_capacity(attempts.len());
         for alike in attempts.chunk_by(|a, b| a.design == b.design) {
-            let (specimen, _) = evaluator.apply(template, (&alike[0].design, None), values)?;
-            let Specimen { task, finger, .. } = &specimen;
-            let rig = evaluator.engine.rig(task, robot, finger, step_factor)?;
+            let specimen = evaluator.apply(template, (&alike[0].design, None), values)?;
+            let specimen = Specimen { robot: robot.clone(), ..specimen };
+            let rig = evaluator.rig(&specimen, None, step_factor)?;
             let grasp = Grasp { stop: self.stop, ..Grasp::of(&specimen.finger) };
             let trajectories: Vec<_> = alike.iter().map(|logged| &logged.trajectory).collect();
             let followed = rig.follow(grasp, Course::Trajectories(&trajectories), STEP_S);

@@ -253,7 +253,7 @@ fn an_attempt_along_its_own_path_is_the_same_attempt() {
     let finger = Finger::new(2.0 * N_PER_MM, 10.0 * N_PER_MM).with_model(&task.finger, 0.0);
     let rig = EngineKind::Direct.rig(&task, &robot, &finger, 1.0).unwrap();
     for offset in [0.0, 8.0 * MM] {
-        let (trial, samples) = rig.hold(Grasp::of(&finger)).sampled(offset, Some(STEP_S));
+        let (trial, samples) = rig.hold(Grasp::of(&finger)).run(offset, Some(STEP_S), 0.0);
         let measured = Curves::of_samples(&samples, 0.0);
         let trajectory = measured.trajectory().unwrap();
         let push = trajectory.push_start();

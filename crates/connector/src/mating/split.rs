@@ -3,7 +3,7 @@
 
 use super::engagement::{SIDES, WallAreas, score};
 use super::frame::{Part, rotations_to_z, turned};
-use super::map::{Envelope, HeightMap, NOWHERE, bounds, rest};
+use super::map::{Envelope, HeightMap, NOWHERE, bounds, maps, rest};
 use super::refine::{REACH, TOLERANCE};
 use super::search::LEAST;
 use super::{MAX_PLAYS, MatingError};
@@ -151,10 +151,8 @@ impl AxisMaps {
         let bounds: Vec<_> = bodies.iter().map(|body| bounds(body)).collect();
         let side = |axis: usize| width(span(bounds.iter().flat_map(|of| of[axis])));
         let step = (side(0).max(side(1)) / MOST_CELLS).max(LEAST_CELL);
-        let maps = |envelope| -> Vec<HeightMap> {
-            bodies.iter().map(|body| HeightMap::new(body, envelope, [step; 2], None)).collect()
-        };
-        let (upper, lower) = (maps(Envelope::Upper), maps(Envelope::Lower));
+        let [upper, lower] =
+            [Envelope::Upper, Envelope::Lower].map(|envelope| maps(bodies, envelope, step));
         AxisMaps { step, upper, lower, bounds, contact, walls: BTreeMap::new() }
     }
 

@@ -1,7 +1,7 @@
 //! Bodies in motion: pose, velocity and mass.
 
 use super::blocks::Vector6;
-use crate::scene::{Body, Inertia, Motion, Pose};
+use crate::scene::{Body, Inertia, Motion, Pose, block_rotation, displacement};
 use nalgebra::{Matrix3, Matrix6, Point3, Translation3, UnitQuaternion, Vector3};
 
 /// Body in motion.
@@ -60,10 +60,7 @@ impl MovingBody {
     /// with its end; its dependence on the configuration of the mechanism is neglected.
     pub fn mass(&self) -> Matrix6<f64> {
         if let Motion::Mechanism(mass) = &self.motion {
-            let axes = self.pose.rotation.to_rotation_matrix().into_inner();
-            let mut both = Matrix6::zeros();
-            both.fixed_view_mut::<3, 3>(0, 0).copy_from(&axes);
-            both.fixed_view_mut::<3, 3>(3, 3).copy_from(&axes);
+            let both = block_rotation(&self.pose.rotation);
             return both * mass * both.transpose();
         }
         let mut mass = Matrix6::from_diagonal_element(self.inertia.mass);
@@ -84,10 +81,7 @@ impl MovingBody {
     /// Sets the velocity of a driven body so that it reaches its target.
     pub fn steer(&mut self, step: f64) {
         let Motion::Driven = self.motion else { return };
-        let moved = self.target.translation.vector - self.pose.translation.vector;
-        let turned = (self.target.rotation * self.pose.rotation.inverse()).scaled_axis();
-        self.velocity.fixed_rows_mut::<3>(0).copy_from(&(moved / step));
-        self.velocity.fixed_rows_mut::<3>(3).copy_from(&(turned / step));
+        self.velocity = displacement(&self.pose, &self.target) / step;
     }
 
     /// Moves the body by its velocity; the rotation is the exponential of the angular velocity.

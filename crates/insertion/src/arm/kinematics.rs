@@ -2,7 +2,7 @@
 //! IEEE Trans. Syst. Man Cybern. 16:93): `dq = J^T (J J^T + l^2)^-1 e`, from the home angles.
 
 use super::{Angles, Arm, ArmError, JOINTS};
-use contact::scene::Pose;
+use contact::scene::{Pose, displacement};
 use input::units::{DEG, MM};
 use nalgebra::{Matrix3, Matrix6, Point3, Translation3, UnitQuaternion, Vector3, Vector6};
 
@@ -97,11 +97,4 @@ impl Posture {
     pub fn tcp_jacobian(&self) -> Matrix6<f64> {
         self.jacobian(&Point3::from(self.tcp.translation.vector), JOINTS - 1)
     }
-}
-
-/// Returns the translation and the rotation vector from one pose to another, base axes.
-pub fn displacement(from: &Pose, to: &Pose) -> Vector6<f64> {
-    let translation = to.translation.vector - from.translation.vector;
-    let rotation = (to.rotation * from.rotation.inverse()).scaled_axis();
-    Vector6::new(translation.x, translation.y, translation.z, rotation.x, rotation.y, rotation.z)
 }

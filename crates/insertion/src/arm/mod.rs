@@ -11,7 +11,7 @@
 mod kinematics;
 mod reduced;
 
-pub use kinematics::{Posture, displacement};
+pub use kinematics::Posture;
 pub use reduced::ReducedArm;
 
 use crate::task::geometry::Axis;

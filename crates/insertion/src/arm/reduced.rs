@@ -1,7 +1,7 @@
 //! Reduced model: an arm near one pose as a single body at the TCP.
 
 use super::{Angles, Arm, ArmError};
-use contact::scene::{Pose, Springs};
+use contact::scene::{Pose, Springs, block_rotation};
 use nalgebra::{Matrix3, Matrix6, SMatrix, UnitQuaternion, Vector3};
 
 /// Smallest ratio of the least to the greatest singular value of the Jacobian (m and rad) at a nonsingular pose.
@@ -102,13 +102,4 @@ impl ReducedArm {
         let torques = self.torques * force;
         torques.iter().zip(self.limits).any(|(torque, limit)| torque.abs() > limit)
     }
-}
-
-/// Returns the 6x6 matrix that rotates linear and angular velocities.
-fn block_rotation(rotation: &UnitQuaternion<f64>) -> Matrix6<f64> {
-    let axes: Matrix3<f64> = rotation.to_rotation_matrix().into_inner();
-    let mut blocks = Matrix6::zeros();
-    blocks.fixed_view_mut::<3, 3>(0, 0).copy_from(&axes);
-    blocks.fixed_view_mut::<3, 3>(3, 3).copy_from(&axes);
-    blocks
 }

@@ -65,7 +65,7 @@ pub struct Evaluator {
     pub cell: Option<Priors>,
 }
 
-/// Task and finger of a design, ready for simulation.
+/// Task, finger and robot of a design, ready for simulation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Specimen {
     /// Task with the numbers of the design.
@@ -76,6 +76,8 @@ pub struct Specimen {
     pub finger: Finger,
     /// Predicted stiffness of the finger, with its standard deviation.
     pub stiffness: Prediction,
+    /// Robot that carries the finger.
+    pub robot: Robot,
 }
 
 impl Specimen {
@@ -149,7 +151,8 @@ impl Evaluator {
         }
         let set = self.completed(Some(template), design, rows);
         let (task, finger) = template.apply(&set, &self.fingers, &stiffness)?;
-        let mut specimen = Specimen { task, design: design.clone(), finger, stiffness };
+        let robot = self.robot.clone();
+        let mut specimen = Specimen { task, design: design.clone(), finger, stiffness, robot };
         for (row, value) in rows.iter().filter(|(row, _)| design.get(&row.path).is_none()) {
             change(row, *value, &mut specimen);
         }
@@ -173,11 +176,15 @@ impl Evaluator {
     /// Returns the rig of a specimen at its taught start, with `step_factor` times the time step.
     pub fn rig(
         &self,
-        Specimen { task, finger, .. }: &Specimen,
+        Specimen { task, finger, robot, .. }: &Specimen,
         taught: Option<OffsetStep>,
         step_factor: f64,
     ) -> Result<Box<dyn Rig>, RigError> {
-        Ok(shifted(self.engine.rig(task, &self.robot, finger, step_factor)?, taught))
+        let rig = self.engine.rig(task, robot, finger, step_factor)?;
+        match taught {
+            None | Some(0) => Ok(rig),
+            Some(shift) => Ok(Box::new(Shifted { rig, shift })),
+        }
     }
 
     /// Measures a specimen according to a plan. The result is invalid once `stop` is set.
@@ -192,9 +199,8 @@ impl Evaluator {
         let rig = self.rig(specimen, taught, 1.0)?;
         let grasp = Grasp { stop, ..Grasp::of(&specimen.finger) };
         let draw = |(cell, values): (&Priors, &Vec<f64>)| -> Result<Drawn, DesignError> {
-            let (drawn, robot) = self.in_cell(specimen, cell, values)?;
-            let rig = self.engine.rig(&drawn.task, &robot, &drawn.finger, 1.0)?;
-            Ok((shifted(rig, taught), drawn.finger))
+            let drawn = self.in_cell(specimen, cell, values)?;
+            Ok((self.rig(&drawn, taught, 1.0)?, drawn.finger))
         };
         let draws = plan.cells.iter().flat_map(|(cell, all)| all.iter().map(move |v| (cell, v)));
         let cells: Vec<Drawn> = draws.map(draw).collect::<Result<_, _>>()?;
@@ -249,13 +255,5 @@ impl Evaluator {
         let on = |template| measure(&self.specimen(template, design, stiffness)?);
         let tasks = self.templates.iter().map(on).collect::<Result<_, DesignError>>()?;
         Ok(Evaluations { stiffness, tasks, cached: Vec::new() })
-    }
-}
-
-/// Returns a rig with its start at the taught start.
-fn shifted(rig: Box<dyn Rig>, taught: Option<OffsetStep>) -> Box<dyn Rig> {
-    match taught {
-        None | Some(0) => rig,
-        Some(shift) => Box::new(Shifted { rig, shift }),
     }
 }

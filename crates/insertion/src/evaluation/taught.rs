@@ -8,7 +8,7 @@ use super::tolerance::{self, OFFSET_LIMIT_STEPS, Search, offset};
 use super::{Evaluation, OffsetStep, Window};
 use crate::finger::Finger;
 use crate::outcome::Outcome;
-use crate::trial::{Grasp, Grasped, Recording, Rig, Sample, Trial};
+use crate::trial::{Followed, Grasp, Grasped, Recording, Rig, Trial};
 use std::ops::Deref;
 use std::sync::atomic::AtomicBool;
 
@@ -96,7 +96,7 @@ impl<R: Deref<Target: Rig> + Send + Sync> Rig for Shifted<R> {
 }
 
 impl Grasped for Shifted<Box<dyn Grasped + '_>> {
-    fn run(&self, shift: f64, every_s: Option<f64>, rest_s: f64) -> (Trial, Vec<Sample>) {
+    fn run(&self, shift: f64, every_s: Option<f64>, rest_s: f64) -> Followed {
         self.rig.run(shift + offset(self.shift), every_s, rest_s)
     }
 }

@@ -19,19 +19,11 @@ use finray::stiffness::PlanarStiffness;
 use input::units::{MM, N_PER_MM};
 use nalgebra::{Matrix3, Matrix6};
 
-/// Values from a task file or a design that replace computed values.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(super) struct Overrides {
-    /// Distance of the remote centre below the TCP, m.
-    pub rcc: Option<f64>,
-    /// Tilting stiffness, N m/rad.
-    pub tilting: Option<f64>,
-}
-
 /// Returns the finger with the stiffness `at_pad` in y and z at the pad.
 ///
 /// `plane` is the stiffness computed in the plane of the finger, `across` the stiffness in x, ry and rz, both at the
-/// middle of the pad. `shoulder` is the height of the part's shoulder above the TCP, m.
+/// middle of the pad. `shoulder` is the height of the part's shoulder above the TCP, m. `rcc`, the distance of the
+/// remote centre below the TCP, m, and `tilting`, the tilting stiffness, N m/rad, replace computed values.
 ///
 /// # Errors
 /// If tilting about the centre alone is softer than the stiffness at the pad.
@@ -41,15 +33,15 @@ pub(super) fn finger(
     across: Matrix3<f64>,
     shoulder: f64,
     at_pad: &Prediction,
-    overrides: Overrides,
+    [rcc, tilting]: [Option<f64>; 2],
 ) -> Result<Finger, FingerError> {
     let [compliance, assembly] = [at_pad.compliance.mean, at_pad.assembly.mean];
     let outline = &printed.outline;
     let pad = Pad { width: outline.depth, height: outline.pad, roof: outline.roof };
     let middle = pad.middle(shoulder);
-    let rcc = overrides.rcc.unwrap_or(plane.centre_below_pad() - middle);
+    let rcc = rcc.unwrap_or(plane.centre_below_pad() - middle);
     let (below, ahead) = (rcc + middle, plane.centre_in_front());
-    let tilting = overrides.tilting.unwrap_or(plane.tilting());
+    let tilting = tilting.unwrap_or(plane.tilting());
     // Compliances at the centre, m/N.
     let at_centre = |name, stiffness: f64, lever: f64| {
         let centre = 1.0 / stiffness - lever * lever / tilting;
@@ -115,7 +107,7 @@ mod tests {
 
     fn finger(
         [compliance, assembly]: [f64; 2],
-        overrides: Overrides,
+        overrides: [Option<f64>; 2],
     ) -> Result<Finger, FingerError> {
         let (plane, across) = stiffness(8.0 * MM, -2.0 * MM, 2.5);
         super::finger(
@@ -140,7 +132,7 @@ mod tests {
 
     #[test]
     fn a_finger_has_the_measured_stiffness_at_the_pad_and_the_computed_tilting_stiffness() {
-        let finger = finger(AT_PAD, Overrides::default()).unwrap();
+        let finger = finger(AT_PAD, [None; 2]).unwrap();
         let compliance = at_pad_middle(&finger);
         for (axis, stiffness) in [(1, 2.6e3), (2, 45e3), (3, 2.5)] {
             let found = 1.0 / compliance[(axis, axis)];
@@ -160,17 +152,15 @@ mod tests {
 
     #[test]
     fn a_given_centre_replaces_the_computed_one() {
-        let overrides = Overrides { rcc: Some(5.0 * MM), tilting: Some(3.0) };
-        let finger = finger(AT_PAD, overrides).unwrap();
+        let finger = finger(AT_PAD, [Some(5.0 * MM), Some(3.0)]).unwrap();
         assert_eq!((finger.rcc, finger.rotation[0]), (5.0 * MM, 3.0));
         assert!((1.0 / at_pad_middle(&finger)[(1, 1)] / 2.6e3 - 1.0).abs() < 1e-12);
     }
 
     #[test]
     fn a_centre_too_far_away_for_the_stiffness_is_rejected() {
-        let overrides = Overrides { rcc: Some(40.0 * MM), tilting: None };
         let parts = ["finray9", "2.60 N/mm", "compliance", "39.0 mm", "2.50 N m/rad", "rcc_mm"];
-        refused(finger(AT_PAD, overrides), &parts);
-        refused(finger([AT_PAD[0], 1e6], Overrides::default()), &["assembly"]);
+        refused(finger(AT_PAD, [Some(40.0 * MM), None]), &parts);
+        refused(finger([AT_PAD[0], 1e6], [None; 2]), &["assembly"]);
     }
 }

@@ -1,7 +1,7 @@
 //! Models of the unmeasured springs of a finger: as in the paper, or computed from the ribs.
 
 use super::Finger;
-use super::computed::{self, Overrides};
+use super::computed;
 use crate::finger::file::{FingerFile, infill, is_shape};
 use crate::space::{DIRECTION_KEY, Design};
 use crate::surrogate::Prediction;
@@ -95,7 +95,7 @@ impl FingerSource {
                     return Err(FingerError::Coupled { task: task.name.clone() });
                 }
                 let rcc = rcc.or(task.finger.rcc.map(|rcc| rcc.at(direction)));
-                let overrides = Overrides { rcc, tilting: design.get(TILTING_KEY) };
+                let given = [rcc, design.get(TILTING_KEY)];
                 let computed = fingers.stiffness(design)?;
                 // Pad and roof are glued to the part: `docs/notes/finger.md`.
                 let mut plane = computed.pad_and_roof;
@@ -106,7 +106,7 @@ impl FingerSource {
                     plane = plane.corrected(compliance, assembly).unwrap_or(plane);
                 }
                 let (printed, across) = (&fingers.file.with(design)?, computed.cross.matrix);
-                computed::finger(printed, plane, across, task.grip.shoulder(), at_pad, overrides)
+                computed::finger(printed, plane, across, task.grip.shoulder(), at_pad, given)
             }
         }
     }

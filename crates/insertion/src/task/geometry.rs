@@ -2,10 +2,9 @@
 
 use super::rounded::Rounded;
 use contact::scene::{Geom, Inertia, Pose, Shape};
+use contact::shapes;
 use input::units::MM;
 use nalgebra::{Matrix3, Point2, Point3, Translation3, Vector3};
-use rapier3d_f64::parry::math::Vector;
-use rapier3d_f64::parry::transformation::try_convex_hull;
 
 /// Coordinate axis in a file; the discriminant is the index of the coordinate.
 #[derive(serde::Deserialize, Clone, Copy)]
@@ -244,9 +243,7 @@ pub type Triangles = (Vec<Point3<f64>>, Vec<[usize; 3]>);
 
 /// Returns corners and outward triangles of the convex hull; `None` if the points lie nearly in a plane.
 pub fn hull(points: &[Point3<f64>]) -> Option<Triangles> {
-    let scaled: Vec<_> = points.iter().map(|p| Vector::new(p.x / MM, p.y / MM, p.z / MM)).collect();
-    let (corners, faces) = try_convex_hull(&scaled).ok()?;
-    let corners: Vec<_> = corners.iter().map(|v| Point3::new(v.x, v.y, v.z) * MM).collect();
+    let (corners, faces) = shapes::hull(points)?;
     let faces: Vec<_> = faces.iter().map(|face| face.map(|corner| corner as usize)).collect();
     (surface_moments(&corners, &faces).0 > FLAT).then_some((corners, faces))
 }

@@ -441,7 +441,7 @@ impl<'a> Attempt<'a> {
             retried: false,
         };
         let samples = self.trace.map_or_else(Vec::new, |trace| trace.samples);
-        (trial, samples, self.recorder.map_or_else(Vec::new, |recorder| recorder.frames))
+        ((trial, samples), self.recorder.map_or_else(Vec::new, |recorder| recorder.frames))
     }
 }
 

@@ -6,7 +6,7 @@
 //! factor. Both ends move inward by 1 mm per degree of yaw and of tilt error, by the shift along x and
 //! by the height by which the part is low in the gripper, and outward by the added clearance.
 
-use super::{Conditions, Grasp, Grasped, Rig, Sample, Trial};
+use super::{Conditions, Followed, Grasp, Grasped, Rig, Trial};
 use crate::finger::Finger;
 use crate::outcome::{FailureClass, Outcome};
 use input::units::{DEG, MM, N_PER_MM};
@@ -55,7 +55,7 @@ fn whole_nanometres(mm: f64) -> f64 {
 }
 
 impl Grasped for (FakeRig, Grasp<'_>) {
-    fn run(&self, offset: f64, _: Option<f64>, _: f64) -> (Trial, Vec<Sample>) {
+    fn run(&self, offset: f64, _: Option<f64>, _: f64) -> Followed {
         let (FakeRig { delay }, grasp) = *self;
         let (low, high) = window_mm(&grasp.finger, &grasp.conditions);
         let stopped = grasp.stop.load(Ordering::Relaxed);
@@ -96,7 +96,7 @@ impl<F: Fn(&Grasp, f64, Trial) -> Trial + Send + Sync> Rig for Altered<F> {
 }
 
 impl<F: Fn(&Grasp, f64, Trial) -> Trial + Send + Sync> Grasped for (&Altered<F>, Grasp<'_>) {
-    fn run(&self, offset: f64, _: Option<f64>, _: f64) -> (Trial, Vec<Sample>) {
+    fn run(&self, offset: f64, _: Option<f64>, _: f64) -> Followed {
         let (Altered(alter), grasp) = self;
         let trial = FakeRig::default().hold(*grasp).trial(offset);
         (alter(grasp, offset, trial), Vec::new())

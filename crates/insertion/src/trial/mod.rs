@@ -122,11 +122,6 @@ pub trait Rig: Send + Sync {
     /// Grasps the part, once for all offsets.
     fn hold<'a>(&'a self, grasp: Grasp<'a>) -> Box<dyn Grasped + 'a>;
 
-    /// Grasps under the conditions of the task file, without a stop flag.
-    fn grasp(&self, finger: &Finger) -> Box<dyn Grasped + '_> {
-        self.hold(Grasp::of(finger))
-    }
-
     /// Returns the trial of a grasp, its start shifted by `offset` metres along y, with its
     /// frames; `None` if the rig does not simulate.
     fn record(&self, _grasp: Grasp<'_>, _offset: f64) -> Option<Recording> {
@@ -152,15 +147,10 @@ const ZEROING_S: f64 = 0.2;
 pub trait Grasped: Send + Sync {
     /// Runs a trial with the start shifted by `offset` metres along y. It rests twice for `rest_s` seconds before the
     /// search; samples are taken every `every_s` seconds from the second rest on.
-    fn run(&self, offset: f64, every_s: Option<f64>, rest_s: f64) -> (Trial, Vec<Sample>);
-
-    /// Returns the trial from the search on, with its samples.
-    fn sampled(&self, offset: f64, every_s: Option<f64>) -> (Trial, Vec<Sample>) {
-        self.run(offset, every_s, 0.0)
-    }
+    fn run(&self, offset: f64, every_s: Option<f64>, rest_s: f64) -> Followed;
 
     /// Returns the trial with the samples that a robot logs if it zeroes its sensor before the search.
-    fn logged(&self, offset: f64, every_s: f64) -> (Trial, Vec<Sample>) {
+    fn logged(&self, offset: f64, every_s: f64) -> Followed {
         self.run(offset, Some(every_s), ZEROING_S)
     }
 

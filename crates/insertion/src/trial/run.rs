@@ -2,7 +2,7 @@
 
 use super::attempt::driven::Driven;
 use super::attempt::{Attempt, Stop};
-use super::record::{Frame, Recorder, Sample, Trace};
+use super::record::{Frame, Recorder, Trace};
 use super::{Course, Followed, Grasp, Grasped, Recording, Rig, Trial, cell};
 use crate::finger::Finger;
 use crate::outcome::Outcome;
@@ -96,17 +96,13 @@ impl Rig for EngineRig {
     }
 
     fn record(&self, grasp: Grasp<'_>, offset: f64) -> Option<Recording> {
-        let (trial, _, frames) =
+        let ((trial, _), frames) =
             self.grasp_with_retry(grasp, true).run_with_retry(offset, None, 0.0);
         Some(Recording::new(trial, frames))
     }
 
     fn follow(&self, grasp: Grasp<'_>, course: Course<'_>, every_s: f64) -> Vec<Followed> {
         let attempt = |task: &Task| Attempt::new(&self.robot, task, &*self.engine, grasp);
-        let ended = |attempt: Attempt<'_>, end| {
-            let (trial, samples, _) = attempt.result(end);
-            (trial, samples)
-        };
         match course {
             Course::Trajectories(trajectories) => {
                 let mut held = attempt(&self.task);
@@ -114,14 +110,14 @@ impl Rig for EngineRig {
                 let each = trajectories.iter().map(|trajectory| {
                     let mut attempt = held.clone();
                     let end = grasped.and_then(|()| attempt.follow(trajectory, every_s));
-                    ended(attempt, end)
+                    attempt.result(end).0
                 });
                 each.collect()
             }
             Course::Probe(probe) => {
                 let mut attempt = attempt(&on_plate(&self.task));
                 let end = attempt.grasp().and_then(|()| attempt.probe(&probe, every_s));
-                vec![ended(attempt, end)]
+                vec![attempt.result(end).0]
             }
         }
     }
@@ -143,25 +139,25 @@ struct GraspWithRetry<'a> {
 }
 
 impl Grasped for GraspWithRetry<'_> {
-    fn run(&self, offset: f64, every_s: Option<f64>, rest_s: f64) -> (Trial, Vec<Sample>) {
-        let (trial, samples, _) = self.run_with_retry(offset, every_s, rest_s);
-        (trial, samples)
+    fn run(&self, offset: f64, every_s: Option<f64>, rest_s: f64) -> Followed {
+        self.run_with_retry(offset, every_s, rest_s).0
     }
 }
 
-/// Trial, samples from the search on, and frames from the grasp on; samples and frames are empty unless requested.
-pub(super) type RecordedRun = (Trial, Vec<Sample>, Vec<Frame>);
+/// Trial with samples from the search on, and frames from the grasp on; samples and frames are empty unless requested.
+pub(super) type RecordedRun = (Followed, Vec<Frame>);
 
 impl GraspWithRetry<'_> {
     fn run_with_retry(&self, offset: f64, every_s: Option<f64>, rest_s: f64) -> RecordedRun {
         let first = self.prepared.run(offset, every_s, rest_s);
-        if first.0.outcome != Outcome::Diverged {
+        if first.0.0.outcome != Outcome::Diverged {
             return first;
         }
         let again =
             || self.rig.prepare(&*self.rig.engine.with_half_step(), self.grasp, self.recorded);
-        let (trial, samples, frames) = self.halved.get_or_init(again).run(offset, every_s, rest_s);
-        (Trial { retried: true, ..trial }, samples, frames)
+        let ((trial, samples), frames) =
+            self.halved.get_or_init(again).run(offset, every_s, rest_s);
+        ((Trial { retried: true, ..trial }, samples), frames)
     }
 }
 
@@ -197,6 +193,7 @@ impl<'a> Prepared<'a> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::Sample;
     use super::*;
     use crate::fixtures::{finger, refused, rig, robot, robot_file, task, task_file};
     use contact::World;
@@ -229,7 +226,7 @@ mod tests {
 
     fn trial(engine: Box<dyn Engine>) -> Trial {
         let rig = EngineRig::new(task("ket8"), &robot("servo"), engine).unwrap();
-        rig.grasp(&finger(2.6, 45.0)).trial(0.0)
+        rig.hold(Grasp::of(&finger(2.6, 45.0))).trial(0.0)
     }
 
     #[test]
@@ -270,8 +267,8 @@ mod tests {
     #[test]
     fn samples_change_nothing_and_end_where_the_trial_ends() {
         let rig = rig(task("ket8"));
-        let grasped = rig.grasp(&finger(2.6, 45.0));
-        let (trial, samples) = grasped.sampled(0.0, Some(1e-3));
+        let grasped = rig.hold(Grasp::of(&finger(2.6, 45.0)));
+        let (trial, samples) = grasped.run(0.0, Some(1e-3), 0.0);
         assert_eq!(trial, grasped.trial(0.0));
         let last = samples.last().unwrap();
         let apart = |pair: &[Sample]| pair[1].time_s - pair[0].time_s;
@@ -292,8 +289,12 @@ mod tests {
             assert!(speed != slow || prepared.descended().is_some());
             // A trial with samples goes all the way by itself.
             for offset in [-2.5e-3, 0.0, 4e-3] {
-                let trial = prepared.run(offset, None, 0.0).0;
-                assert_eq!(trial, prepared.run(offset, Some(1e-3), 0.0).0, "{speed} at {offset} m");
+                let trial = prepared.run(offset, None, 0.0).0.0;
+                assert_eq!(
+                    trial,
+                    prepared.run(offset, Some(1e-3), 0.0).0.0,
+                    "{speed} at {offset} m"
+                );
             }
         }
     }
@@ -302,7 +303,7 @@ mod tests {
     fn a_recorded_trial_is_the_same_trial() {
         let (rig, finger) = (rig(task("ket8")), finger(2.6, 45.0));
         let recording = rig.record(Grasp::of(&finger), 5e-4).unwrap();
-        assert_eq!(recording.trial, rig.grasp(&finger).trial(5e-4));
+        assert_eq!(recording.trial, rig.hold(Grasp::of(&finger)).trial(5e-4));
         let frames = &recording.frames;
         let last = frames.last().unwrap();
         assert!(recording.decided_s <= last.time_s, "an outcome that no frame shows");

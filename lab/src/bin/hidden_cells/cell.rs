@@ -10,7 +10,6 @@ use insertion::evaluation::template::Template;
 use insertion::evaluation::tolerance::{self, Search};
 use insertion::evaluation::{Evaluation, OffsetStep, grid_mm};
 use insertion::outcome::Outcome;
-use insertion::robot::Robot;
 use insertion::space::Design;
 use insertion::stiffness::Measurement;
 use insertion::trial::NEVER;
@@ -57,16 +56,16 @@ impl<'a> HiddenCell<'a> {
             });
             let hidden = named.map(|prior| (prior.clone(), prior.at(random.random()))).collect();
             let cell = HiddenCell { number, draws, evaluator, template, hidden };
-            let (specimen, robot) = cell.setup(&Design::infill(MIDDLE[0], MIDDLE[1]))?;
-            if window(&specimen, &robot, EngineKind::Direct, None)?.is_some() {
+            let specimen = cell.setup(&Design::infill(MIDDLE[0], MIDDLE[1]))?;
+            if window(&specimen, EngineKind::Direct, None)?.is_some() {
                 return Ok(cell);
             }
         }
         Err(Failure::running(format!("cell {number}: nothing inserts in {MAX_DRAWS} draws")))
     }
 
-    /// Returns a finger in the cell, and the cell's robot.
-    pub fn setup(&self, design: &Design) -> Result<(Specimen, Robot), Failure> {
+    /// Returns a finger in the cell.
+    pub fn setup(&self, design: &Design) -> Result<Specimen, Failure> {
         let values: Vec<_> = self.hidden.iter().map(|(prior, value)| (prior, *value)).collect();
         self.evaluator.apply(self.template, (design, None), &values).map_err(Failure::input)
     }
@@ -95,15 +94,15 @@ impl FingerWindows {
         engine: EngineKind,
     ) -> Result<Self, Failure> {
         let design = Design::infill(finger.density_percent, finger.direction_deg);
-        let (specimen, robot) = cell.setup(&design)?;
-        let direct = window(&specimen, &robot, EngineKind::Direct, None)?;
+        let specimen = cell.setup(&design)?;
+        let direct = window(&specimen, EngineKind::Direct, None)?;
         let clock = Instant::now();
         let near = direct.as_ref().map_or(0, |taught| taught.shift);
-        let truth = window(&specimen, &robot, engine, Some(near))?;
+        let truth = window(&specimen, engine, Some(near))?;
         let elapsed_s = clock.elapsed().as_secs_f64();
         let nominal = cell.evaluator.apply(cell.template, (&design, None), &[]);
-        let (specimen, robot) = nominal.map_err(Failure::input)?;
-        let nominal = window(&specimen, &robot, EngineKind::Direct, None)?;
+        let specimen = nominal.map_err(Failure::input)?;
+        let nominal = window(&specimen, EngineKind::Direct, None)?;
         let taught_again = truth.as_ref().is_none_or(|truth| truth.shift != near);
         let windows = [truth, direct, nominal];
         Ok(FingerWindows { finger: *finger, windows, taught_again, elapsed_s })
@@ -155,11 +154,10 @@ fn cells(taught: &TaughtStart) -> String {
 /// Measures the window around a start that inserts: `near`, or else a taught one; returns `None` if none inserts.
 pub fn window(
     specimen: &Specimen,
-    robot: &Robot,
     engine: EngineKind,
     near: Option<OffsetStep>,
 ) -> Result<Option<TaughtStart>, Failure> {
-    let Specimen { task, finger, .. } = specimen;
+    let Specimen { task, finger, robot, .. } = specimen;
     let rig = engine.rig(task, robot, finger, 1.0).map_err(Failure::input)?;
     if let Some(shift) = near {
         let moved = Shifted { rig: &*rig, shift };

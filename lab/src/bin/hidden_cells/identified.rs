@@ -64,8 +64,9 @@ pub fn line(
     let identified = others.par_iter().map(|one| {
         let design = Design::infill(one.finger.density_percent, one.finger.direction_deg);
         let under = cell.evaluator.apply(cell.template, (&design, None), &values);
-        let (specimen, own) = under.map_err(Failure::input)?;
-        let taught = window(&specimen, robot.as_ref().unwrap_or(&own), EngineKind::Direct, None)?;
+        let mut specimen = under.map_err(Failure::input)?;
+        specimen.robot = robot.clone().unwrap_or(specimen.robot);
+        let taught = window(&specimen, EngineKind::Direct, None)?;
         Ok(taught.map_or(0.0, |taught| taught.window.range_mm()))
     });
     let identified = identified.collect::<Result<Vec<f64>, Failure>>()?;

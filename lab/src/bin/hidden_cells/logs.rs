@@ -38,8 +38,8 @@ pub fn write(
 ) -> Result<(), Failure> {
     let mut runs = "log,infill_density_percent,infill_direction_deg,offset_mm,outcome\n".to_owned();
     for (finger, [density, direction]) in LOGGED.into_iter().enumerate() {
-        let (specimen, robot) = cell.setup(&Design::infill(density, direction))?;
-        let Specimen { task, finger: held, .. } = specimen;
+        let specimen = cell.setup(&Design::infill(density, direction))?;
+        let Specimen { task, finger: held, robot, .. } = specimen;
         let rig = engine.rig(&task, &robot, &held, 1.0).map_err(Failure::input)?;
         let grasp = Grasp::of(&held);
         let known = |one: &&FingerWindows| one.finger.infill() == [density, direction];

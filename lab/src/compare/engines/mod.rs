@@ -13,7 +13,7 @@ use ask_tell::statistics::{quantile, sorted};
 use insertion::evaluation::{OffsetStep, Window, grid_mm, tolerance};
 use insertion::outcome::Outcome;
 use insertion::stiffness::Measurement;
-use insertion::trial::Trial;
+use insertion::trial::{Grasp, Trial};
 use report::text_table;
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
@@ -95,7 +95,7 @@ pub fn run(tasks: &[TaskSettings], designs: &[Measurement], reduced: bool) -> Cr
 fn in_both(subject: &Subject, settings: [&Setting; 2], reduced: bool) -> CrossCheck {
     let reference = settings[0].evaluate(&subject.finger);
     let window = &reference.window;
-    let grasped = settings.map(|setting| setting.rig.grasp(&subject.finger));
+    let grasped = settings.map(|setting| setting.rig.hold(Grasp::of(&subject.finger)));
     let trial = |offset: OffsetStep| {
         let trials = grasped.each_ref().map(|grasped| grasped.trial(tolerance::offset(offset)));
         TrialPair {

@@ -185,7 +185,7 @@ impl Evaluator {
         set
     }
 
-    /// Applies values of parameters to a design, in addition to those of the cell; returns its specimen and robot.
+    /// Applies values of parameters to a design, in addition to those of the cell; returns its specimen.
     /// The stiffness is predicted unless given.
     ///
     /// # Errors
@@ -195,7 +195,7 @@ impl Evaluator {
         template: &Template,
         (design, given): (&Design, Option<Prediction>),
         values: &[(&Parameter, f64)],
-    ) -> Result<(Specimen, Robot), DesignError> {
+    ) -> Result<Specimen, DesignError> {
         let mut set = design.clone();
         for (parameter, value) in values {
             let path = &parameter.path;
@@ -207,22 +207,21 @@ impl Evaluator {
         }
         let stiffness = given.map_or_else(|| self.predict(&set), Ok)?;
         let mut specimen = self.specimen(template, &set, stiffness)?;
-        let mut robot = self.robot.clone();
         for (parameter, value) in values {
             change(parameter, *value, &mut specimen);
-            robot.change(parameter, *value);
+            specimen.robot.change(parameter, *value);
         }
-        Ok((specimen, robot))
+        Ok(specimen)
     }
 
-    /// Returns specimen and robot with these values of another cell's rows. The rows of the evaluator's cell whose
+    /// Returns the specimen with these values of another cell's rows. The rows of the evaluator's cell whose
     /// paths the other cell lacks still apply.
     pub(in crate::evaluation) fn in_cell(
         &self,
         specimen: &Specimen,
         cell: &Priors,
         values: &[f64],
-    ) -> Result<(Specimen, Robot), DesignError> {
+    ) -> Result<Specimen, DesignError> {
         let Specimen { task, design, stiffness, .. } = specimen;
         let Some(template) = self.templates.iter().find(|own| own.task.name == task.name) else {
             return Ok(DESIGN.fail(&task.name, "unknown task of this evaluator")?);
@@ -235,6 +234,7 @@ impl Evaluator {
         let mut rows = self.rows(Some(template));
         rows.retain(|(own, _)| of_task.iter().all(|row| row.path != own.path));
         rows.extend(drawn);
-        Ok((self.specimen_under(template, design, *stiffness, &rows)?, robot))
+        let drawn = self.specimen_under(template, design, *stiffness, &rows)?;
+        Ok(Specimen { robot, ..drawn })
     }
 }

@@ -32,7 +32,7 @@ pub struct Grasp {
     pub faces: [f64; 2],
     /// Part between the pads.
     pub part: Part,
-    /// Area of either face that a pad touches, m2.
+    /// Area of either face within the width of a pad and above the socket, m2.
     pub area: f64,
 }
 
@@ -56,7 +56,7 @@ impl Grasp {
 pub struct Rejected {
     /// Distance between the faces, m.
     pub apart: f64,
-    /// Area of either face within the width of a pad, m2.
+    /// Area of either face within the width of a pad and above the socket, m2.
     pub area: f64,
     /// Reason: `the pads would ...`.
     pub reason: &'static str,
@@ -66,26 +66,27 @@ pub struct Rejected {
 /// `free` that the fingers cannot hold.
 pub fn own(plug: &[Triangle], free: f64) -> (Option<Grasp>, Option<Rejected>) {
     let [left, right] = [-1.0, 1.0].map(|sign| faces(plug, sign));
-    let (mut best, mut rejected): (Option<Grasp>, Option<Rejected>) = (None, None);
+    let (mut best, mut rejected): ((f64, Option<Grasp>), Option<Rejected>) = ((0.0, None), None);
     // Of equal areas, the first is kept.
     for (low, high) in left.iter().flat_map(|low| right.iter().map(move |high| (low, high))) {
         match grasp_at(plug, low, high, free) {
-            Ok(grasp) if best.as_ref().is_none_or(|best| grasp.area > best.area) => {
-                best = Some(grasp);
-            }
+            Ok((touched, grasp)) if touched > best.0 => best = (touched, Some(grasp)),
             Ok(_) => {}
             Err(reason) => {
-                let z = [low.z[0].max(high.z[0]).max(free), low.z[1].min(high.z[1])];
-                let x = common(common(low.x, high.x), PAD_X);
-                let area = width(x).max(0.0) * width(z).max(0.0);
-                let apart = high.y - low.y;
+                let (area, apart) = (area(low, high, free), high.y - low.y);
                 if area > rejected.map_or(0.0, |other| other.area) && apart > 0.0 {
                     rejected = Some(Rejected { apart, area, reason });
                 }
             }
         }
     }
-    (best, rejected)
+    (best.1, rejected)
+}
+
+/// Returns the area of two opposite faces within the width of a pad and above `free`, m2.
+fn area(low: &Face, high: &Face, free: f64) -> f64 {
+    let (x, z) = (common(common(low.x, high.x), PAD_X), common(low.z, high.z));
+    width(x).max(0.0) * width(common(z, [free, f64::INFINITY])).max(0.0)
 }
 
 /// Returns the intersection of two intervals; its end is below its start if they do not overlap.
@@ -114,11 +115,16 @@ fn faces(plug: &[Triangle], sign: f64) -> Vec<Face> {
     found
 }
 
-/// Returns the grasp at two opposite faces.
+/// Returns the area that the pads touch at two opposite faces, and the grasp.
 ///
 /// # Errors
 /// The reason if the fingers cannot hold the plug there.
-fn grasp_at(plug: &[Triangle], low: &Face, high: &Face, free: f64) -> Result<Grasp, &'static str> {
+fn grasp_at(
+    plug: &[Triangle],
+    low: &Face,
+    high: &Face,
+    free: f64,
+) -> Result<(f64, Grasp), &'static str> {
     let (x, z) = (common(low.x, high.x), common(low.z, high.z));
     let faces = [low.y, high.y];
     if width(x) < LEAST_WIDTH {
@@ -158,8 +164,8 @@ fn grasp_at(plug: &[Triangle], low: &Face, high: &Face, free: f64) -> Result<Gra
         return Err("other parts of the plug are in the way of the pads");
     }
     let part = block("grip", [x, faces, [held[0], shoulder]]);
-    let area = width(held) * width(common(x, PAD_X));
-    Ok(Grasp { shoulder, faces, part, area })
+    let touched = width(held) * width(common(x, PAD_X));
+    Ok((touched, Grasp { shoulder, faces, part, area: area(low, high, free) }))
 }
 
 /// Returns the grasp of a handle of a size (x, y, z), m, which is added to the top of the plug and stays above `free`,
@@ -171,7 +177,7 @@ pub fn handle(plug: &[Triangle], [x, y, z]: [f64; 3], free: f64) -> Grasp {
     let shoulder = (low + z).max(free + CLEAR + Pad::PUBLISHED.height);
     let faces = [-y / 2.0, y / 2.0];
     let part = block("handle", [[-x / 2.0, x / 2.0], faces, [low, shoulder]]);
-    Grasp { shoulder, faces, part, area: x.min(width(PAD_X)) * z.min(Pad::PUBLISHED.height) }
+    Grasp { shoulder, faces, part, area: x.min(width(PAD_X)) * z }
 }
 
 #[cfg(test)]
@@ -216,10 +222,11 @@ mod tests {
     #[test]
     fn a_body_is_held_rather_than_its_boot() {
         let held = |blocks: &[[f64; 4]]| own(&stacked(blocks), 8.0 * MM).0.expect("a grasp");
-        let boot = held(&[[7.0, 14.0, 10.0, 28.0], [4.0, 6.0, 28.0, 38.0]]);
-        let body = held(&[[14.0, 7.0, 10.0, 28.0], [6.0, 4.0, 28.0, 38.0]]);
-        assert!((width(boot.faces) - 6.0 * MM).abs() < 1e-9);
-        assert!((width(body.faces) - 7.0 * MM).abs() < 1e-9);
+        // The roofs cannot rest on the body beside the wide side of the boot.
+        let boot = held(&[[14.0, 7.0, 10.0, 28.0], [6.0, 4.0, 28.0, 38.0]]);
+        let body = held(&[[7.0, 14.0, 10.0, 28.0], [4.0, 6.0, 28.0, 38.0]]);
+        assert!((width(boot.faces) - 4.0 * MM).abs() < 1e-9);
+        assert!((width(body.faces) - 14.0 * MM).abs() < 1e-9);
         assert!(body.replaces(&boot) && !boot.replaces(&body));
     }
 }

@@ -1,7 +1,7 @@
 //! Finds the compliant finger that makes a connector insertion most robust.
 //!
 //! Data flows between the crates in one direction; `docs/architecture.md` has a diagram. This crate contains the
-//! [`commands`] of the program `optimize`: each is a request, whose fields are its options, and a response,
+//! [`commands`] of the program `optimize`: each is a request, whose fields are its options, and an output,
 //! which is printed as text or JSON.
 //!
 //! Inside the library every quantity is in SI units; values in millimetres, newtons per millimetre or degrees have the

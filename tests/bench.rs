@@ -36,6 +36,9 @@ fn an_evaluation_shows_what_was_measured_and_warns_where_it_is_far_off() {
     assert_eq!(found["measured"].as_array().map(Vec::len), Some(1), "{found}");
     assert_eq!(found["measured"][0]["range_mm"], 0.1);
     of(10, "").says(&["measured      0.1 mm on the bench\nwarning       do not trust"]);
+    let bound = of(20, "");
+    let text = "measured      20.0 mm or more, on the bench\nwarning       do not trust";
+    assert!(bound.succeeds().contains(text), "{}", bound.stdout);
     assert!(!of(30, "").succeeds().contains("measured  "));
 }
 

@@ -316,6 +316,7 @@ fn open_and_fine_meshes_are_the_same_shape() {
     let found = |name: &str, pair: [&str; 2]| import(&folder, name, pair).json();
     let drawn = found("drawn", [&plug, &socket]);
     assert_clearance(&drawn, [0.16, 0.2]);
+    assert_eq!(drawn["left_out"], serde_json::json!([]));
     // The last facet of the plug is one of its handle, that of the socket one of its base.
     let open = [&plug, &socket]
         .map(|text| text[..text.rfind("facet normal").unwrap()].to_owned() + "endsolid part\n");
@@ -324,7 +325,7 @@ fn open_and_fine_meshes_are_the_same_shape() {
     let fine = found("fine", [&fine_plug, &fine_socket]);
     let facets = [&fine_plug, &fine_socket].map(|text| text.matches("endfacet").count());
     assert!(facets.iter().sum::<usize>() > 58_000);
-    for other in [&open, &fine] {
+    for other in [&drawn, &open, &fine] {
         assert_eq!(other["check"]["nominal"]["outcome"], "inserted", "{other}");
         for key in ["clearance_x_mm", "clearance_y_mm"] {
             let [a, b] = [&drawn, other].map(|found| found[key].as_f64().unwrap());

@@ -72,9 +72,8 @@ fn resuming_asks_about_the_provenance_and_uses_no_cache_of_another_simulation() 
     assert_eq!(kept.len(), 3);
     let resume = |more: &[&str]| {
         let (dir, cache) = (copy.word("study"), copy.word("cache"));
-        let few = ["--simulations", "16", "--samples", "20"];
         let quick = ["--no-confirm", "--no-levers", "--no-map", "--quiet", "--json"];
-        optimize(&[&["resume", &dir, "--cache", &cache], &few[..], &quick, more].concat())
+        optimize(&[&["resume", &dir, "--cache", &cache], &quick[..], more].concat())
     };
     let parts = ["measured with different settings", "source_sha256", "--accept-changed"];
     resume(&[]).fails(2, &parts);

@@ -254,7 +254,7 @@ fn said(
 #[test]
 fn clean_logs_draw_no_remark() {
     let evaluator = evaluator();
-    (1..=10).into_par_iter().for_each(|cell| {
+    (1..=20).into_par_iter().for_each(|cell| {
         let found = said(&evaluator, cell, &recorded(&evaluator, cell), |_| ());
         assert_eq!(found, Ok(Vec::new()), "cell {cell}");
     });

@@ -63,13 +63,13 @@ impl Spread<'_> {
 
 impl<'a> Ties<'a> {
     pub(super) fn of(record: &'a StudyRecord, index: u64, measured: &[MeasuredFinger]) -> Self {
+        let designs = record.equivalent_designs(index);
         // A walk finds larger forces than the search.
-        let walked = |(found, loss): (&'a Recorded, f64)| {
+        let walked = |found: &'a Recorded| {
             let mut walked = record.walked.iter().map(|walked| &walked.recorded);
-            (walked.find(|walked| walked.index == found.index).unwrap_or(found), loss)
+            walked.find(|walked| walked.index == found.index).unwrap_or(found)
         };
-        let designs: Vec<_> = record.equivalent_designs(index).into_iter().map(walked).collect();
-        let force = |r: &Recorded| record.measure(r, Measure::PeakForce);
+        let force = |r: &'a Recorded| record.measure(walked(r), Measure::PeakForce);
         let stiffness = |r: &Recorded| r.stiffness.compliance.mean / N_PER_MM;
         let tied = if designs.len() < 2 { &[] } else { &designs[..] };
         let forces = tied.iter().filter_map(|&(design, _)| Some((design, force(design)?)));
@@ -83,7 +83,8 @@ impl<'a> Ties<'a> {
         let alternatives = extremes.into_iter().filter_map(|(reason, extreme, unit)| {
             extreme.map(|(design, value)| (reason, design, value, unit))
         });
-        let allowed = |(r, _): &&(&Recorded, f64)| ExcessForce::of(record, &r.tasks()).is_none();
+        let allowed =
+            |(r, _): &&(&'a Recorded, f64)| ExcessForce::of(record, &walked(r).tasks()).is_none();
         let safe = |&(design, loss): &(&'a Recorded, f64)| SafeChoice {
             design,
             measured_mm: range_mm(measured, &design.design),

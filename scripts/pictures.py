@@ -9,9 +9,6 @@ from pathlib import Path
 
 from browser import Browser
 
-# Time of the frame, s, at which the inserting plug has dropped in and the other one jams.
-FRAME_S = 1.17
-
 
 def first_screen(report, file):
     """Captures the first screen of a page."""
@@ -36,8 +33,9 @@ def main(report, film, folder):
         page.wait('document.querySelector("#film").dataset.state')
         page.picture(folder / "report-phone.png")
         page = browser.open(film, 1280, 760)
-        page.js(f"""(() => {{ const time = document.querySelector("#time"); time.value = {FRAME_S};
-            time.dispatchEvent(new Event("input")); }})()""")
+        # The last frame, which shows both outcomes.
+        page.js("""(() => { const time = document.querySelector("#time"); time.value = time.max;
+            time.dispatchEvent(new Event("input")); })()""")
         page.wait_for_drawing()
         page.picture(folder / "replay.png")
 

@@ -47,7 +47,7 @@ pub fn typical() -> Uncertainty {
     Uncertainty::parse(UNCERTAINTIES[0].text, "typical").unwrap()
 }
 
-/// Asserts that it is refused with an error that has all these parts.
+/// Asserts that the result is an error whose message contains all these parts.
 pub fn refused<T>(result: Result<T, impl ToString>, parts: &[&str]) {
     let error = result.err().unwrap_or_else(|| panic!("accepted: {parts:?}")).to_string();
     for part in parts {
@@ -55,7 +55,7 @@ pub fn refused<T>(result: Result<T, impl ToString>, parts: &[&str]) {
     }
 }
 
-/// Returns a finger of these stiffnesses, N/mm.
+/// Returns a finger with this stiffness in the compliance and assembly directions, N/mm.
 pub fn finger(compliance: f64, assembly: f64) -> Finger {
     Finger::new(compliance * N_PER_MM, assembly * N_PER_MM)
 }

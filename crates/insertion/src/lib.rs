@@ -7,6 +7,8 @@
 //! A [`task`] is a plug, a socket and a strategy; a [`robot`] carries two fingers; the [`surrogate`]
 //! predicts the stiffness of the finger of a design; a [`trial`] is one attempt from one start; an
 //! [`evaluation`] is the tolerance window of a design, with the largest force and slip of its trials.
+//!
+//! "The paper" and "published" refer to Hartisch et al. 2025, arXiv:2509.10012.
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 #![deny(clippy::print_stdout, clippy::print_stderr)]

@@ -3,17 +3,19 @@
 use parameters::plan::grid::Traceable;
 use serde::{Deserialize, Serialize};
 
-/// Failure class of a trial; the numbers are the paper's (Table "Failure Cases").
+/// Failure class of a trial, numbered as in the paper (Table "Failure Cases").
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(into = "u8", try_from = "u8")]
 pub enum FailureClass {
     /// 1: the part left the grasp before the search began.
     ContactLossBeforeSearch,
-    /// 2: when the search ended, the leading edge was not inside the opening.
+    /// 2: when the search ended, the leading edge was not inside the opening; or the part ended beside its mated
+    /// pose.
     PlugMissed,
-    /// 3: the leading edge was inside the opening, but the part is not seated; it is still held.
+    /// 3: the leading edge was inside the opening, but the part is not seated; it did not leave the grasp.
     Jammed,
-    /// 4: the part left the grasp, or slipped beyond the limit, during search or insertion.
+    /// 4: the part left the grasp, or slipped beyond the limit, during search or insertion; or it is seated, but not
+    /// held by both fingers.
     ContactLossInInsertion,
 }
 
@@ -26,7 +28,7 @@ impl FailureClass {
         FailureClass::ContactLossInInsertion,
     ];
 
-    /// Returns the paper's number, 1 to 4.
+    /// Returns the number in the paper, 1 to 4.
     pub fn number(self) -> u8 {
         self as u8 + 1
     }
@@ -62,11 +64,11 @@ impl TryFrom<u8> for FailureClass {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Outcome {
-    /// Seated: deep enough and upright enough.
+    /// Seated (deep and upright enough) and held by both fingers.
     Inserted,
     /// Numerical divergence of the simulation; not a property of the design.
     Diverged,
-    /// Not seated, for a physical reason.
+    /// Not inserted, for a physical reason.
     #[serde(untagged)]
     Failed(FailureClass),
 }

@@ -103,14 +103,14 @@ const SETTLING_TIME_CONSTANTS: f64 = 5.0;
 
 impl MountedRobot {
     /// Returns the overtravel of an assembly move along a unit vector, m: the deflection of the arm under its
-    /// assembly force. Without overtravel, a soft arm would hardly push the part.
+    /// assembly force, without which a soft arm would hardly push the part; 0 unless the robot is an arm.
     pub fn overtravel(&self, along: &Vector3<f64>) -> f64 {
         let deflection =
             |arm: &ReducedArm| arm.assembly_force * along.dot(&(arm.compliance * along));
         self.arm().map_or(0.0, deflection)
     }
 
-    /// Returns the settling time of the robot after a command, s.
+    /// Returns the settling time of the servos after a command, s; 0 unless the robot is an arm.
     pub fn settling_time(&self) -> f64 {
         self.arm().map_or(0.0, |arm| SETTLING_TIME_CONSTANTS * arm.time_constant)
     }

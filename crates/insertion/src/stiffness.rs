@@ -118,12 +118,12 @@ pub fn parse(text: &str, file: &str) -> Result<Vec<Measurement>, SurrogateError>
     check_units(rows(text, file)?, file)
 }
 
-/// Returns the designs that were measured for the publication.
+/// Returns the designs that were measured for the paper.
 pub fn designs() -> Vec<Measurement> {
     parse(STIFFNESS[0].text, STIFFNESS[0].file).unwrap_or_default()
 }
 
-/// Returns the designs of the publication with the lowest, the median and the highest compliance stiffness.
+/// Returns the designs of the paper with the lowest, median and highest stiffness in the compliance direction.
 pub fn representative_designs() -> Vec<Measurement> {
     let mut designs = designs();
     designs.sort_by(|a, b| a.compliance.total_cmp(&b.compliance));
@@ -192,7 +192,7 @@ pub(crate) fn check_all(measurements: &[Measurement]) -> Result<(), SurrogateErr
     check_count(measurements)
 }
 
-/// Returns the function that makes an error of column and problem at a place.
+/// Returns a function that converts a column and its problem to an error at a place.
 fn column_error(place: Place) -> impl Fn((&'static str, String)) -> SurrogateError {
     move |(column, problem)| place.clone().key(column).fault(problem).into()
 }
@@ -233,7 +233,7 @@ fn check(new: &Measurement, before: &[Measurement]) -> Result<(), (&'static str,
             let problem = format!("design {} is given twice; number each once", new.design);
             return Err((HEADER[0], problem));
         }
-        // A replicate would leak into the leave-one-out error of its twin.
+        // A replicate would leak into the leave-one-out error of the other.
         if old.infill() == new.infill() {
             let problem = format!(
                 "same density and direction as design {}; give the average of repeated measurements",

@@ -36,9 +36,9 @@ pub struct Arm {
     pub tool: Pose,
     /// Joint angles at which the TCP is at the nominal start of a task.
     pub home: Angles,
-    /// Whether the servos damp the rate of the position error instead of the joint speed.
+    /// Whether the servos use velocity feed-forward: the damper acts on the rate of the position error.
     pub feed_forward: bool,
-    /// Force at the end of the assembly move on an immovable part, N.
+    /// Force of the arm on an immovable part at the end of the assembly move, N.
     pub assembly_force: f64,
 }
 
@@ -51,9 +51,9 @@ pub struct Joint {
     pub frame: Pose,
     /// Axis of rotation in the joint frame.
     pub axis: Unit<Vector3<f64>>,
-    /// Position gain of its servo, N m/rad.
+    /// Position gain `k` of its servo, N m/rad.
     pub stiffness: f64,
-    /// Damping of its servo, N m s/rad.
+    /// Damping `c` of its servo, N m s/rad.
     pub damping: f64,
     /// Largest torque, N m.
     pub limit: f64,

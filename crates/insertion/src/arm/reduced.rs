@@ -11,19 +11,19 @@ const MIN_SINGULAR_RATIO: f64 = 1e-3;
 /// then rotations, TCP axes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ReducedArm {
-    /// N/m, N/rad, N m/rad.
+    /// Stiffness; by block N/m, N/rad and N m/rad.
     pub stiffness: Matrix6<f64>,
-    /// N s/m, N s/rad, N m s/rad.
+    /// Damping; by block N s/m, N s/rad and N m s/rad.
     pub damping: Matrix6<f64>,
-    /// kg, kg m, kg m2.
+    /// Mass; by block kg, kg m and kg m2.
     pub mass: Matrix6<f64>,
     /// Tilt of the TCP about the task's x at the pose of the model, rad.
     pub tilt: f64,
-    /// Whether the damper acts on the rate of the position error instead of the flange speed.
+    /// Whether the damper acts on the rate of the position error (velocity feed-forward) instead of the flange speed.
     pub feed_forward: bool,
     /// Slowest time constant of a servo, damping over stiffness, s.
     pub time_constant: f64,
-    /// Force at the end of the assembly move on an immovable part, N.
+    /// Force of the arm on an immovable part at the end of the assembly move, N.
     pub assembly_force: f64,
     /// Translational compliance at the TCP, task axes, m/N.
     pub compliance: Matrix3<f64>,

@@ -26,7 +26,7 @@ use parameters::{Parameter, numbers};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-/// Stiffness model, tasks, robot and engine: everything that determines the evaluation of a design.
+/// Models, tasks, robot, engine and cell: everything that determines the evaluation of a design.
 ///
 /// ```
 /// use finray::printed::PrintedFinger;
@@ -61,14 +61,15 @@ pub struct Evaluator {
     pub robot: Robot,
     /// Contact engine.
     pub engine: EngineKind,
-    /// Cell whose values replace the numbers that a design does not set; `robot` is the robot of the cell.
+    /// Robot cell whose identified or nominal values replace numbers that a design does not set. If a cell is given,
+    /// `robot` is its robot.
     pub cell: Option<Priors>,
 }
 
-/// Task, finger and robot of a design, ready for simulation.
+/// Design with the task, finger and robot that result from its numbers and those of the cell, ready for simulation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Specimen {
-    /// Task with the numbers of the design.
+    /// Task with the numbers of the design and the cell.
     pub task: Task,
     /// Design.
     pub design: Design,
@@ -102,9 +103,10 @@ pub struct Evaluations {
     pub cached: Vec<bool>,
 }
 
-/// Evaluator of designs that several threads share.
+/// Interface for the evaluation of designs from several threads.
 pub trait Evaluate: Sync {
-    /// Evaluates a design, with all draws unless a race is lost. Equal designs and races give equal results.
+    /// Evaluates a design. A lost race ends the trials of its success rate early. Equal designs and races give equal
+    /// results.
     fn evaluate(&self, design: &Design, race: Option<&Race>) -> Result<Evaluations, DesignError>;
 }
 
@@ -133,7 +135,7 @@ impl Evaluator {
         self.specimen_under(template, design, stiffness, &self.rows(Some(template)))
     }
 
-    /// Returns the specimen with values of rows of a cell for the numbers that the design does not set.
+    /// Returns the specimen with these values of a cell's parameters for the numbers that the design does not set.
     pub(super) fn specimen_under(
         &self,
         template: &Template,
@@ -173,7 +175,8 @@ impl Evaluator {
         Ok(Some(teach(&*rig, &specimen.finger, stop).map_or(0, |taught| taught.shift)))
     }
 
-    /// Returns the rig of a specimen at its taught start, with `step_factor` times the time step.
+    /// Returns the rig of a specimen, with its start shifted to the taught one if given, and `step_factor` times the
+    /// time step.
     pub fn rig(
         &self,
         Specimen { task, finger, robot, .. }: &Specimen,
@@ -226,8 +229,8 @@ impl Evaluator {
         self.measure(&taught, search, plan, stop)
     }
 
-    /// Measures the firm part of a specimen's window by [`firm::REPEATS`] repeats. The result is invalid once
-    /// `stop` is set.
+    /// Measures the [firm window](firm) of a specimen by [`firm::REPEATS`] repeats; `measured` has its window. The
+    /// result is invalid once `stop` is set.
     pub fn firm(
         &self,
         specimen: &Specimen,

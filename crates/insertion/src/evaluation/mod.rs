@@ -16,7 +16,7 @@ use crate::surrogate::null_is_nan;
 use ask_tell::statistics::{Moments, normal_quantile};
 use serde::{Deserialize, Serialize};
 
-/// Indifference zone of ranges, mm: a bench does not resolve smaller differences. Measured windows of the publication
+/// Indifference zone of ranges, mm: a bench does not resolve smaller differences. Measured windows of the paper
 /// differ by 0.1 to 0.5 mm.
 pub const INDIFFERENCE_MM: f64 = 0.3;
 

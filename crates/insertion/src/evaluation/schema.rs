@@ -1,4 +1,4 @@
-//! Serialized form of an evaluation: the keys of JSON, journal and tables.
+//! Serialized form of an evaluation: its keys in JSON, in the journal of a study and in tables.
 
 use super::{OffsetStep, RobustRange, SuccessRate, Window, grid_mm};
 use crate::outcome::Outcome;
@@ -9,7 +9,7 @@ pub(super) struct WindowRow {
     range_mm: f64,
     negative_mm: f64,
     positive_mm: f64,
-    /// Outcome without its failure class, which both ends contain.
+    /// Outcome at the nominal start, without a failure class: if it failed, both ends contain its class.
     nominal: String,
     failure_negative: Option<Outcome>,
     failure_positive: Option<Outcome>,
@@ -49,7 +49,7 @@ impl TryFrom<WindowRow> for Window {
     }
 }
 
-/// Largest number of grid steps that is read: beyond any window, and small enough for sums.
+/// Limit to which deserialized grid steps are clamped: beyond any window, and small enough for sums.
 const MAX_STEPS: f64 = 1e8;
 
 fn steps(mm: f64) -> OffsetStep {
@@ -71,7 +71,7 @@ pub(super) fn taught_steps<'de, D: Deserializer<'de>>(
     Ok(Option::deserialize(from)?.map(steps))
 }
 
-/// Serializes shares, NaN as 0, since JSON has no NaN.
+/// Serializes [`Evaluation::end_shares`](super::Evaluation::end_shares), NaN as 0, since JSON has no NaN.
 pub(super) fn finite<S: Serializer>(shares: &[f64; 2], to: S) -> Result<S::Ok, S::Error> {
     shares.map(|share| if share.is_finite() { share } else { 0.0 }).serialize(to)
 }
@@ -82,9 +82,10 @@ struct SuccessRow<'a> {
     success_rate: Option<f64>,
     success_low: Option<f64>,
     success_high: Option<f64>,
-    /// Upper bound of the rate if the evaluation was stopped early by a race: there is no rate or interval then.
+    /// Upper bound of the rate if a [`Race`](super::robustness::race::Race) stopped the evaluation early; there is no
+    /// rate or interval then.
     success_at_most: Option<f64>,
-    /// Number of draws until the race stopped the evaluation.
+    /// Number of draws tried before the race stopped the evaluation.
     raced_draws: Option<u32>,
     #[serde(flatten)]
     counts: &'a SuccessRate,

@@ -14,8 +14,8 @@ use ask_tell::statistics::Moments;
 use finray::FingerError;
 use finray::mechanics::FingerStiffness;
 
-/// Returns the prediction for a design from `infill`, the prediction for its infill. The logarithms of the changes of
-/// shape are added in quadrature to the distance from the measured designs.
+/// Returns the prediction for a design from `infill`, the prediction for a finger of the file with its infill. For each
+/// changed number of the file, `ln(value / file value)` is added in quadrature to `hull_distance`.
 ///
 /// # Errors
 /// If a finger cannot be computed.

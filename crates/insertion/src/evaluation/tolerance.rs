@@ -6,18 +6,18 @@ use crate::outcome::Outcome;
 use crate::trial::{Grasp, Grasped, Rig, Trial};
 use input::units::MM;
 
-/// Largest offset tried, in grid steps: well beyond the widest published window (9 mm).
+/// Largest offset tried, in grid steps: 15 mm, well beyond the widest published window (9 mm).
 pub const OFFSET_LIMIT_STEPS: OffsetStep = 150;
 
 /// Search for the ends of a window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Search {
-    /// Step by step outward to the first failure, as in the paper.
+    /// Outward in single grid steps to the first failure, as in the paper.
     Walk,
-    /// In strides of 0.5 mm outward to the first failure, then by bisection: a third of the trials.
-    /// The result equals that of the walk if no gap in the window is narrower than a stride, as on all 44 pairs of
-    /// task and measured finger (`docs/notes/performance.md`).
+    /// Outward in strides of 0.5 mm to the first failure, then by bisection: a third of the trials of the walk.
+    /// The result equals that of the walk unless the window has a gap (offsets that fail between offsets that insert)
+    /// narrower than a stride; on all 44 pairs of task and measured finger it does (`docs/notes/performance.md`).
     #[default]
     Strides,
 }
@@ -36,7 +36,7 @@ pub fn evaluate_grasp(rig: &dyn Rig, grasp: Grasp, search: Search) -> Evaluation
     let nominal = [grasped.trial(0.0)];
     let Trial { outcome, margin, .. } = nominal[0];
     let ((negative, below), (positive, above)) = if outcome == Outcome::Inserted {
-        // Distance between the first offsets tried, in grid steps.
+        // Distance between the offsets tried until the first failure, in grid steps.
         let stride = if search == Search::Walk { 1 } else { 5 };
         let end = |sign| find_end(&*grasped, margin, sign, stride);
         rayon::join(|| end(-1), || end(1))
@@ -61,11 +61,11 @@ pub fn evaluate_grasp(rig: &dyn Rig, grasp: Grasp, search: Search) -> Evaluation
 /// End of a window.
 #[derive(Clone, Copy)]
 struct End {
-    /// Last inserting step, outward from the nominal start.
+    /// Number of grid steps from the nominal start to the last inserting offset, 0 or above.
     step: OffsetStep,
-    /// Outcome of the next step; `None` at [`OFFSET_LIMIT_STEPS`].
+    /// Outcome at the next offset outward; `None` at [`OFFSET_LIMIT_STEPS`].
     failure: Option<Outcome>,
-    /// Position of the outcome change between the two steps, 0 to 1; the nominal margin if there is no window.
+    /// Position of the outcome change between these two offsets, 0 to 1; if the nominal start fails, its margin.
     share: f64,
 }
 
@@ -78,7 +78,7 @@ fn find_end(
 ) -> (End, Vec<Trial>) {
     let mut trials = Vec::new();
     let (mut step, mut margin) = (0, nominal_margin);
-    // Step, outcome and margin of the innermost start that fails.
+    // Step, outcome and margin of the innermost failing offset.
     let mut outside: Option<(OffsetStep, Outcome, f64)> = None;
     loop {
         let next = match outside {
@@ -98,7 +98,7 @@ fn find_end(
     (End { step, failure: outside.map(|(_, failure, _)| failure), share }, trials)
 }
 
-/// Returns the position, 0 to 1, of the zero of a linear margin from `inside`, 0 or above, to `outside`, 0 or below.
+/// Returns the position, 0 to 1, at which a margin that falls linearly from `inside` (>= 0) to `outside` (<= 0) is 0.
 fn share(inside: f64, outside: f64) -> f64 {
     let drop = inside - outside;
     if drop > 0.0 { inside / drop } else { 0.0 }
@@ -117,7 +117,7 @@ impl Evaluation {
             failure_counts: [0; 4],
             diverged: 0,
             trials: 0,
-            // Until a trial inserts there is no largest value.
+            // There is no largest value before a trial inserts.
             peak_force_n: f64::NAN,
             slip_mm: f64::NAN,
             simulated_s: 0.0,

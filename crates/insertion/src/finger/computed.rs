@@ -21,9 +21,10 @@ use nalgebra::{Matrix3, Matrix6};
 
 /// Returns the finger with the stiffness `at_pad` in y and z at the pad.
 ///
-/// `plane` is the stiffness computed in the plane of the finger, `across` the stiffness in x, ry and rz, both at the
-/// middle of the pad. `shoulder` is the height of the part's shoulder above the TCP, m. `rcc`, the distance of the
-/// remote centre below the TCP, m, and `tilting`, the tilting stiffness, N m/rad, replace computed values.
+/// `plane` is the stiffness computed in the plane of the finger (y, z, rx), `across` the stiffness out of it (x, ry,
+/// rz; SI units), both at the middle of the pad. `shoulder` is the height of the part's shoulder above the TCP, m.
+/// `rcc`, the distance of the remote centre below the TCP, m, and `tilting`, the tilting stiffness, N m/rad, replace
+/// computed values.
 ///
 /// # Errors
 /// If tilting about the centre alone is softer than the stiffness at the pad.

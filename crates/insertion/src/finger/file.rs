@@ -18,13 +18,14 @@ pub struct FingerFile {
     pub finger: PrintedFinger,
 }
 
-/// Returns whether a key sets a number of a finger file (`finger.skin.thickness_mm`). The keys of springs
-/// (`finger.rcc_mm`) contain no table.
+/// Returns whether a key sets a number of a finger file, of shape or material (`finger.skin.thickness_mm`). Such a key
+/// names a table of the file; a key of the springs (`finger.rcc_mm`) does not.
 pub fn is_shape(key: &str) -> bool {
     key.strip_prefix("finger.").is_some_and(|path| path.contains('.'))
 }
 
-/// Returns the infill of a design; `phase_mm` is the position of the first rib, by default that of the finger file.
+/// Returns the infill of a design; `phase_mm` is the position of the first rib (phase of the rib pattern), by default
+/// that of the finger file.
 /// Numbers that the design does not set are NaN, which is invalid in a finger.
 pub fn infill(design: &Design, phase_mm: Option<f64>) -> infill::InfillDesign {
     let value = |key| design.get(key).unwrap_or(f64::NAN);

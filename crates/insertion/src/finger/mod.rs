@@ -14,13 +14,13 @@ use parameters::numbers::{RCC_KEY, TILTING_KEY};
 /// One finger, in SI units; both fingers of a gripper are equal.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Finger {
-    /// Spring in y at the RCC, the direction in which the jaws close, N/m.
+    /// Stiffness in y at the RCC (compliance direction, in which the jaws close), N/m.
     pub compliance: f64,
-    /// Spring in z at the RCC, the direction of assembly, N/m.
+    /// Stiffness in z at the RCC (assembly direction), N/m.
     pub assembly: f64,
-    /// Spring in x, across the finger's width, N/m.
+    /// Stiffness in x, across the finger's width, N/m.
     pub depth: f64,
-    /// Rotational springs about x, y and z through the RCC, N m/rad.
+    /// Rotational stiffness about x, y and z through the RCC, N m/rad.
     pub rotation: [f64; 3],
     /// Distance of the RCC below the TCP, towards the plug's tip, m.
     pub rcc: f64,
@@ -38,7 +38,7 @@ pub struct Finger {
     pub coupling: Option<Coupling>,
 }
 
-/// Rotational spring about x, N m/rad: the upper end of the range in the paper's Table "Simulation
+/// Rotational stiffness about x, N m/rad: the upper end of the range in the paper's Table "Simulation
 /// Inputs" (0.5 .. 2); the paper used 1. See `docs/notes/calibration.md`.
 const TILTING: f64 = 2.0;
 

@@ -37,7 +37,7 @@ impl FingerModelKind {
 /// Finger model, which builds the fingers of designs.
 #[derive(Debug)]
 pub enum FingerSource {
-    /// Model of the paper: the measured springs act at one remote centre.
+    /// Model of the paper: the measured stiffness acts at one remote centre.
     Paper,
     /// Computed from the ribs.
     Computed(Box<ComputedFingers>),
@@ -72,7 +72,8 @@ impl FingerSource {
     }
 
     /// Returns the finger of a design on a task with the predicted stiffness, at the pad or, in the paper's model, at
-    /// the remote centre. The caller sets the other numbers of the design, except remote centre and tilting stiffness.
+    /// the remote centre. The caller sets the numbers of the design that this does not use: all but the remote centre
+    /// and, in the computed model, the tilting stiffness.
     ///
     /// # Errors
     /// If the finger cannot be printed, or cannot have this stiffness.

@@ -1,4 +1,5 @@
-//! Stiffness computed from the ribs: mean of the models if fewer than seven fingers were measured.
+//! Stiffness computed from the ribs, and its ratio to the measured stiffness: basis of the models if fewer than seven
+//! fingers were measured.
 
 use super::{Estimate, Fitted, Samples};
 use crate::stiffness::{Axis, Infill};
@@ -13,7 +14,7 @@ use std::sync::{Mutex, PoisonError};
 #[derive(Debug)]
 pub struct ComputedStiffness {
     finger: PrintedFinger,
-    /// Stiffness along each [`Axis`], N/m, by the bits of the infill.
+    /// Stiffness along each [`Axis`], N/m; the key is the bit pattern of the infill.
     cache: Mutex<BTreeMap<[u64; 2], [f64; 2]>>,
 }
 
@@ -23,8 +24,9 @@ impl ComputedStiffness {
         ComputedStiffness { finger: finger.clone(), cache: Mutex::default() }
     }
 
-    /// Returns the stiffness along an axis, N/m: geometric mean over the phases of the ribs. In the assembly direction,
-    /// pad and roof are held: the leave-one-out error is smaller than with the pad alone.
+    /// Returns the stiffness along an axis, N/m: geometric mean over the possible positions of the first rib. In the
+    /// compliance direction the pad is moved as a rigid face; in the assembly direction pad and roof together, because
+    /// the leave-one-out error is larger with the pad alone.
     ///
     /// # Errors
     /// If the finger cannot be printed.
@@ -54,8 +56,11 @@ pub(super) const DEGREES_OF_FREEDOM: f64 = 10.0;
 /// Lognormal distribution of the ratio of measured to computed stiffness.
 #[derive(Debug)]
 pub(super) struct LognormalRatio {
+    /// Mean of the logarithm.
     log: f64,
+    /// Standard deviation of the logarithm.
     sd: f64,
+    /// Number of measured fingers.
     count: f64,
 }
 

@@ -37,9 +37,11 @@ const MIN_DENSITY: f64 = 1.0;
 
 #[derive(Debug, Clone, Copy)]
 struct Hyperparameters {
-    /// Exponent of the density in the feature.
+    /// Exponent of the density in the feature (the stiffness or compliance of the lamina).
     exponent: f64,
+    /// Inverse correlation length, not the angle of the ribs.
     theta: f64,
+    /// Ratio of noise to process variance.
     nugget: f64,
 }
 
@@ -72,7 +74,7 @@ fn inputs(infill: Infill, exponent: f64) -> [f64; 3] {
     [libm::pow(density / 20.0, exponent) * lamina, libm::log(density), infill[1]]
 }
 
-/// Fits a process about the stiffness of the lamina; `None` if no process can be fitted.
+/// Fits a process whose mean is the law of walls and ribs; `None` if no process can be fitted.
 pub(super) fn fit(axis: Axis, measured: &Samples) -> Option<PhysicalProcess<2>> {
     let (kind, exponents): (_, &[f64]) = match axis {
         Axis::Assembly => (LinkKind::Identity, &[1.0]),

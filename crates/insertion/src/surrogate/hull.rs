@@ -7,7 +7,9 @@ use nalgebra::Point2;
 /// Convex hull in coordinates scaled by the measured spans.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Hull {
+    /// Smallest density and direction.
     origin: Infill,
+    /// Largest minus smallest density and direction; 1 if equal.
     span: Infill,
     /// Corners, counter-clockwise; two for a segment, one for a point.
     corners: Vec<Point2<f64>>,

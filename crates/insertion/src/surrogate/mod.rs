@@ -40,13 +40,13 @@ pub struct Estimate {
     pub sd: f64,
 }
 
-/// Predicted stiffness of one finger, written as a `StiffnessRow`.
+/// Predicted stiffness of one finger, serialized as a `StiffnessRow`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(into = "StiffnessRow", from = "StiffnessRow")]
 pub struct Prediction {
-    /// In the compliance direction (y), N/m.
+    /// Stiffness in the compliance direction (y), N/m.
     pub compliance: Estimate,
-    /// In the assembly direction (z), N/m.
+    /// Stiffness in the assembly direction (z), N/m.
     pub assembly: Estimate,
     /// Distance to the hull of the measured designs, in units of the measured spans; 0 inside.
     pub hull_distance: f64,
@@ -59,7 +59,8 @@ impl Prediction {
         Prediction { compliance: exact(compliance), assembly: exact(assembly), hull_distance: 0.0 }
     }
 
-    /// Returns mean and standard deviation of the stiffness across and along the pad, N/m.
+    /// Returns mean and standard deviation, N/m, of the stiffness at the pad, in the compliance direction (across the
+    /// pad's face) and in the assembly direction (along it).
     pub fn at_pad(&self) -> [[f64; 2]; 2] {
         [self.compliance, self.assembly].map(|Estimate { mean, sd }| [mean, sd])
     }
@@ -94,7 +95,7 @@ struct StiffnessRow {
     inside_hull: bool,
 }
 
-/// Reads null as NaN, which JSON does not have.
+/// Deserializes NaN from null, since JSON has no NaN.
 pub(crate) fn null_is_nan<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
     Ok(Option::<f64>::deserialize(deserializer)?.unwrap_or(f64::NAN))
 }
@@ -125,7 +126,8 @@ impl From<StiffnessRow> for Prediction {
     }
 }
 
-/// Measured designs (density in percent, direction in degrees) and their stiffness along one axis, N/m.
+/// Measured designs (density in percent, direction in degrees) and their stiffness along one axis, N/m, or its ratio
+/// to the computed stiffness.
 type Samples = Dataset<f64, f64, Ix1>;
 
 fn samples(infills: &[Infill], stiffness: &[f64]) -> Samples {
@@ -136,9 +138,9 @@ fn infills(measured: &Samples) -> impl Iterator<Item = Infill> {
     measured.records().rows().into_iter().map(|row| [row[0], row[1]])
 }
 
-/// Fitted model of the stiffness along one axis.
+/// Fitted model of the stiffness along one axis, N/m, or of its ratio to the computed stiffness.
 trait Fitted: std::fmt::Debug + Send + Sync {
-    /// Predicts the stiffness of a new finger: mean and standard deviation.
+    /// Predicts the value for a new finger: mean and standard deviation.
     fn predict(&self, infill: Infill) -> Estimate;
 
     /// Returns the parameters of the model as text.

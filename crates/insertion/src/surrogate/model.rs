@@ -48,7 +48,8 @@ impl ModelKind {
     }
 }
 
-/// Fits a model of one axis. The data of a kind with computed stiffness are ratios of measured to computed stiffness.
+/// Fits a model of one axis to `measured`: stiffness, N/m, or, for the computed kinds, ratios of measured to computed
+/// stiffness. Returns `None` if the fit fails.
 fn fit_axis(axis: Axis, kind: ModelKind, measured: &Samples) -> Option<Box<dyn Fitted>> {
     fn boxed<F: Fitted + 'static>(fitted: Option<F>) -> Option<Box<dyn Fitted>> {
         fitted.map(|fitted| Box::new(fitted) as Box<dyn Fitted>)
@@ -67,9 +68,9 @@ fn fit_axis(axis: Axis, kind: ModelKind, measured: &Samples) -> Option<Box<dyn F
 /// Leave-one-out error of one model on one axis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Loo {
-    /// The axis.
+    /// Axis of the stiffness.
     pub axis: Axis,
-    /// The model.
+    /// Kind of the model.
     pub model: ModelKind,
     /// Root mean square error, N/mm; NaN if the model could not be fitted.
     pub rmse_n_per_mm: f64,
@@ -88,12 +89,12 @@ struct AxisData {
     axis: Axis,
     /// Stiffness, N/m, or ratios of measured to computed stiffness.
     measured: Samples,
-    /// Unit of each design's value, N/m: the computed stiffness for a ratio, else 1.
+    /// Factor from each value of `measured` to the stiffness, N/m: the computed stiffness for a ratio, else 1.
     units: Vec<f64>,
 }
 
 impl AxisData {
-    /// Returns the data of an axis, in the unit of each measurement.
+    /// Returns the data of an axis: each measured stiffness, N/m, divided by its unit.
     fn new(axis: Axis, measurements: &[Measurement], units: Vec<f64>) -> Self {
         let infills: Vec<_> = measurements.iter().map(Measurement::infill).collect();
         let values = measurements.iter().zip(&units).map(|(m, unit)| m.stiffness(axis) / unit);
@@ -136,9 +137,9 @@ pub struct Model {
     pub measurements: Vec<Measurement>,
     hull: Hull,
     chosen: [Chosen; 2],
-    /// Leave-one-out errors: one row per axis and model, assembly first.
+    /// Leave-one-out errors of each axis and model, assembly first.
     pub loo: Vec<Loo>,
-    /// Stiffness computed from the ribs, once for each finger.
+    /// Cache of the stiffness computed from the ribs.
     computed: computed::ComputedStiffness,
     /// Whether the models predict ratios to the computed stiffness, which takes about 0.2 s per finger.
     pub ratios: bool,
@@ -195,14 +196,15 @@ fn choose(data: &AxisData, kinds: &[ModelKind]) -> Result<(Chosen, Vec<Loo>), Su
     let best = eligible.min_by(|a, b| a.mean_absolute_percent.total_cmp(&b.mean_absolute_percent));
     let best = best.ok_or(unfittable.clone())?;
     best.chosen = true;
-    // An overconfident model is widened until the left-out errors fit; none is narrowed.
+    // The standard deviation of an overconfident model is widened to the leave-one-out errors; none is narrowed.
     let widen = best.standardised_rms.max(1.0);
     let fitted = fit_axis(data.axis, best.model, &data.measured).ok_or(unfittable)?;
     Ok((Chosen { fitted, widen }, loo))
 }
 
 impl Model {
-    /// Returns the stiffness of one finger, N/m, for any infill (a density below 1 percent counts as 1). The standard deviation is that of a finger yet to be printed: model error and scatter together.
+    /// Returns the stiffness of one finger, N/m, for any infill (a density below 1 percent counts as 1). The standard
+    /// deviation is that of a finger yet to be printed: model error and scatter together.
     ///
     /// # Errors
     /// If the model uses the computed stiffness and the finger cannot be computed.
@@ -222,12 +224,12 @@ impl Model {
         input::counted(self.measurements.len(), "measured design")
     }
 
-    /// Returns the row of the model used on an axis.
+    /// Returns the leave-one-out error of the model used on an axis.
     pub fn chosen(&self, axis: Axis) -> Option<&Loo> {
         self.loo.iter().find(|row| row.axis == axis && row.chosen)
     }
 
-    /// Returns the model's parameters on an axis, in words.
+    /// Returns the parameters of the model used on an axis, as text.
     pub fn describe(&self, axis: Axis) -> String {
         self.chosen[axis as usize].fitted.describe()
     }

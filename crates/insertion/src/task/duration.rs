@@ -3,11 +3,11 @@
 use super::{Ending, Phase, Strategy};
 use input::units::MM;
 
-/// Longest trial that is accepted, s.
+/// Largest accepted duration of a trial, s.
 pub const LONGEST_TRIAL_S: f64 = 60.0;
-/// Shortest duration of a move, s, so that a tiny displacement does not jerk.
+/// Shortest duration of a move, s; it bounds the acceleration of a tiny displacement.
 pub const SHORTEST_MOVE_S: f64 = 0.02;
-/// Longest wait after the end of the command of a move with a tolerance, s.
+/// Longest wait for the TCP to come within the tolerance of a target once the commanded motion has ended, s.
 pub const TOLERANCE_TIMEOUT_S: f64 = 1.0;
 /// Time to close the jaws and for the fingers to come to rest, s.
 pub const GRASP_S: f64 = 0.3;
@@ -36,7 +36,7 @@ impl Strategy {
     /// `settling` seconds and lengthens the move of a phase by `extra`, m.
     ///
     /// # Errors
-    /// The largest duration of a trial and its longest phase, as a message.
+    /// If a trial can take longer; the message states its largest duration and its longest phase.
     pub fn check_time(&self, extra: impl Fn(&Phase) -> f64, settling: f64) -> Result<(), String> {
         let seconds = |phase: &Phase| phase.longest_s(extra(phase), settling);
         let total = GRASP_S + CARRY_S + settling + self.phases.iter().map(seconds).sum::<f64>();

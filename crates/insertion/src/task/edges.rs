@@ -38,7 +38,8 @@ impl Cut {
 /// An edge by its two faces.
 pub type Edge = [Face; 2];
 
-/// Returns the edges with a name: the four of a face ("-z"), or the one between two ("+x-z"); `None` if invalid.
+/// Returns the edges with a name: the four edges of a face ("-z"), or the edge of two faces ("+x-z"); `None` if
+/// invalid.
 pub fn named(text: &str) -> Option<Vec<Edge>> {
     let face = |text: &str| faces().find(|face| face.name() == text);
     let first = face(text.get(..2)?)?;
@@ -65,7 +66,7 @@ pub fn cut_at(edges: &[(Edge, Cut)], edge: Edge) -> Option<Cut> {
     edges.iter().find(|(other, _)| same(other, &edge)).map(|(_, cut)| *cut)
 }
 
-/// All points with `normal . p <= distance`: normal and distance.
+/// Half-space of the points `p` with `normal . p <= distance`: outward normal, and distance from the origin, m.
 pub(super) type HalfSpace = (Vector3<f64>, f64);
 
 /// Returns the half-space behind the plane through a point with an outward normal.
@@ -185,7 +186,7 @@ fn intersection(planes: [&HalfSpace; 3]) -> Option<Point3<f64>> {
     normals.try_inverse().map(|inverse| Point3::from(inverse * distances))
 }
 
-/// Largest distance from the plug's tip at which a box that leads in begins, m.
+/// Largest distance from the plug's tip to the lower face of a box whose edges lead in, m.
 const LEAD_IN: f64 = 2.0 * MM;
 /// Largest radius, as a share of a box's smallest side: sheet metal is round at its edge.
 const MAX_SHARE: f64 = 0.49;

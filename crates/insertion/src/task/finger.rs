@@ -14,7 +14,7 @@ pub struct FingerModel {
     pub coupling: Option<Coupling>,
 }
 
-/// Distance of the remote centre from the contact plane towards the tip, by infill direction.
+/// Distance of the remote centre below the TCP, towards the plug's tip, by infill direction.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(untagged, deny_unknown_fields)]
 #[serde(expecting = "a number of mm, or { at_0_deg = mm, per_deg = mm }")]
@@ -39,7 +39,7 @@ pub enum Rcc {
 pub struct Coupling(Matrix6<f64>);
 
 impl Rcc {
-    /// Distance of the publication, m.
+    /// Distance in the paper, m.
     pub const PUBLISHED_DISTANCE: f64 = 21.0 * MM;
 
     /// Returns the distance for an infill direction in degrees, m.

@@ -120,7 +120,7 @@ impl Task {
     }
 }
 
-/// Converts a task whose numbers have been checked against the table of numbers.
+/// Converts a task whose numbers have been checked by [`numbers::check_file`].
 fn convert(raw: RawTask, file: &str) -> Result<Task, InputError> {
     let (check, RawSocket { opening_x, opening_y, part }) = (Check { file }, raw.socket);
     let plain = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
@@ -172,7 +172,7 @@ fn check_speed(check: Check<'_>, strategy: &Strategy, limits: Limits) -> Result<
 /// Checks that the torsional friction of a pad is at most that of the largest contact patch.
 fn check_torsion(check: Check<'_>, friction: &Friction) -> Result<(), InputError> {
     let PadTorsion::Points(torsion) = friction.finger_torsion else { return Ok(()) };
-    // The moment of friction that acts at the edge of the patch.
+    // Largest moment per unit of normal force: all friction acts at the edge of the largest patch.
     let (torsion, most) = (torsion / MM, LARGEST_PATCH_MM * friction.finger_plug);
     if torsion <= most {
         return Ok(());

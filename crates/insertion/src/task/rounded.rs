@@ -1,4 +1,4 @@
-//! Box with round edges, decomposed into convex shapes that join without steps: a capsule along each round
+//! Box with round edges, decomposed into convex shapes that join without steps: a core (capsule) along each round
 //! edge, one hull with sharp edges that spans all flat faces, and, at each corner that is not part of a ball,
 //! a hull that approximates the arcs within 1 um.
 //!
@@ -69,7 +69,7 @@ impl Rounded {
         })
     }
 
-    /// Returns the single core of a box whose edges all have the same radius.
+    /// Returns the whole box as one rounded box if its edges all have the same radius.
     fn single_core(&self) -> Option<(Shape, Vector3<f64>)> {
         let (_, Cut::Radius(radius)) = *self.edges.first()? else { return None };
         let all =

@@ -24,7 +24,7 @@ pub mod driven;
 
 /// Shortest rest after a move, s.
 const REST: f64 = 0.03;
-/// Length of a step in the grasp and in rests, in steps of the engine.
+/// Time step during the grasp and rests, as a multiple of that of the engine.
 const COARSE: f64 = 2.0;
 
 /// Reason for the end of an attempt before its last phase is complete.
@@ -50,10 +50,12 @@ pub(super) struct Attempt<'a> {
     pub world: Box<dyn World>,
     target: Tcp,
     stage: Stage,
-    /// First move of the search and its number of simulated steps, if a part of it has been simulated.
+    /// First move of the search and the number of its steps simulated in the shared descent, if any.
     begun: Option<(Move, usize)>,
     conditions: Conditions,
+    /// Transform from the world to the task frame: the inverse of the socket's displacement.
     pub socket: Pose,
+    /// Simulated time, s.
     time: f64,
     /// Grasp point in each finger's frame right after the grasp.
     grasp: [Vector3<f64>; 2],
@@ -216,7 +218,7 @@ impl<'a> Attempt<'a> {
         self.with_coarse_step(|attempt| (0..attempt.steps(time)).try_for_each(|_| attempt.step()))
     }
 
-    /// Runs `steps` with a longer step, while no motion is commanded.
+    /// Runs `steps` with a longer time step, for times without commanded motion.
     fn with_coarse_step<T>(&mut self, steps: impl FnOnce(&mut Self) -> T) -> T {
         let fine = self.world.step_s();
         self.world.set_step(fine * COARSE);
@@ -412,7 +414,7 @@ impl<'a> Attempt<'a> {
         self.phases.push(end);
     }
 
-    /// Returns the outcome of the attempt after this end, with the part seated or not.
+    /// Returns the outcome of an attempt that ended with `end`; `seated` as in [`FinalState`].
     fn outcome(&self, end: Result<(), Stop>, seated: bool) -> Outcome {
         if matches!(end, Err(Stop::Diverged | Stop::Interrupted)) {
             return Outcome::Diverged;
@@ -422,7 +424,7 @@ impl<'a> Attempt<'a> {
         classify(FinalState { seated, gripped: self.monitor.gripped(), lost_in, entered })
     }
 
-    /// Returns the result of the trial after this end, its samples and its frames.
+    /// Returns the result of an attempt that ended with `end`, its samples and its frames.
     pub fn result(self, end: Result<(), Stop>) -> RecordedRun {
         let placement = self.placement();
         // A part in motion may still tip: only one at rest counts, or one that bottomed and stopped the robot.

@@ -41,7 +41,7 @@ pub struct WorkCell {
     pub command: BodyId,
     /// Robot flange, at the TCP.
     pub flange: BodyId,
-    /// The hand at -y and the hand at +y.
+    /// Jaw and finger at -y, and at +y.
     pub hands: [Hand; 2],
     /// Plug without its latch.
     pub plug: BodyId,
@@ -62,7 +62,7 @@ pub struct Hand {
     pub finger: BodyId,
     /// The jaw's slide; axis 1 (y) is the servo.
     pub slide: JointId,
-    /// Position of the jaw on the flange, y, at the zero of the slide, m.
+    /// y of the jaw in the flange frame at position 0 of the slide, m.
     pub zero_y: f64,
 }
 

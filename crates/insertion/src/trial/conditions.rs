@@ -1,4 +1,4 @@
-//! Differences between two trials of the same finger at the same offset.
+//! Conditions of a trial: deviations of socket, start, friction and grasp from the task file.
 
 use super::cell::WorkCell;
 use crate::finger::{Pad, ROOF_GAP};
@@ -14,7 +14,7 @@ pub struct Conditions {
     pub yaw: f64,
     /// Shift of the start along x, m.
     pub start_across: f64,
-    /// Rotation of the start about x, in addition to the tilt of the search, rad.
+    /// Rotation of the start about x, in addition to the tilt of the search strategy, rad.
     pub start_tilt: f64,
     /// Factor on the friction between finger and plug.
     pub friction_finger: f64,
@@ -24,7 +24,7 @@ pub struct Conditions {
     pub clearance: f64,
     /// Displacement of the part in the gripper along x, m.
     pub grasp_across: f64,
-    /// Downward shift of the part in the gripper, m: a gap between shoulder and roof.
+    /// Downward shift of the part in the gripper, m; it leaves a gap between the part's shoulder and the finger's roof.
     pub grasp_low: f64,
 }
 
@@ -41,7 +41,8 @@ impl Conditions {
         grasp_low: 0.0,
     };
 
-    /// Returns the task under these conditions; grasp, yaw and shift of the start are not part of it.
+    /// Returns the task under these conditions, except the displacement in the grasp (see [`displace`](Self::displace))
+    /// and yaw and shift of the start, which the trial applies.
     pub fn task(&self, nominal: &Task) -> Task {
         let mut task = nominal.clone();
         task.strategy.tilt += self.start_tilt;
@@ -50,7 +51,7 @@ impl Conditions {
             *moment *= self.friction_finger;
         }
         task.friction.plug_socket *= self.friction_socket;
-        // Plug parts at the height of the pads touch the finger, not the socket, and keep their friction.
+        // Plug parts that reach above the lower edge of the pads touch the finger, and keep their friction.
         let pads = task.grip.shoulder_z + ROOF_GAP - Pad::PUBLISHED.height;
         let below = |part: &&mut Part| part.solid.corners().iter().all(|corner| corner.z < pads);
         for part in task.plug.parts.iter_mut().filter(below).chain(&mut task.socket) {
@@ -66,7 +67,7 @@ impl Conditions {
         task
     }
 
-    /// Moves the part and its stand to the position in the gripper under these conditions.
+    /// Displaces the plug, its latch and its stand by the grasp displacement of these conditions.
     pub fn displace(&self, cell: &mut WorkCell) {
         let by = Pose::translation(self.grasp_across, 0.0, -self.grasp_low);
         for body in [cell.plug, cell.stand].into_iter().chain(cell.latch) {
@@ -76,7 +77,7 @@ impl Conditions {
     }
 }
 
-/// Returns the side of the opening's middle on which a part lies: -1, +1, or 0 if it lies across.
+/// Returns the side of the opening's middle, along an axis, on which a part lies: -1 or +1, or 0 if it lies on both.
 fn side(part: &Part, axis: usize, middle: f64) -> f64 {
     let corners = part.solid.corners();
     let along = || corners.iter().map(|corner| corner[axis]);
@@ -128,7 +129,7 @@ mod tests {
         }
     }
 
-    /// Free width of the socket along an axis through the middle of its opening, at the top.
+    /// Free width of the socket along an axis through the middle of its opening, at the top, m.
     fn width(task: &Task, axis: usize) -> f64 {
         let middle = task.opening.map(|[from, to]| (from + to) / 2.0);
         let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);

@@ -59,8 +59,8 @@ impl EngineKind {
         <EngineKind as clap::ValueEnum>::from_str(name, false).ok()
     }
 
-    /// Returns the engine with `factor` times its production step, and its settings. For the closed formula it is a
-    /// placeholder.
+    /// Returns the engine with `factor` times its production time step, and its settings. For the closed formula it is
+    /// a placeholder.
     fn configured(self, factor: f64) -> (Box<dyn Engine>, toml::Table) {
         // Settings are flat structs of numbers, which TOML can always hold.
         macro_rules! scaled {
@@ -81,7 +81,7 @@ impl EngineKind {
         }
     }
 
-    /// Returns the engine with `factor` times its production step; a placeholder unless it
+    /// Returns the engine with `factor` times its production time step; a placeholder unless it
     /// [simulates](Self::simulates).
     pub fn build(self, factor: f64) -> Box<dyn Engine> {
         self.configured(factor).0

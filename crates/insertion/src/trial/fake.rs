@@ -1,10 +1,11 @@
 //! Rig with a closed-form window, for tests of the code that runs trials.
 //!
-//! It inserts for offsets within `[-(2 + 4 / k), 1 + a / 50 + (21 - r) / 10]` mm, with `k` and `a`
-//! the compliance and assembly stiffness in N/mm and `r` the distance of the remote centre in mm;
-//! below, the plug jams, and above, it misses the opening. The lower end is divided by the friction
-//! factor. Both ends move inward by 1 mm per degree of yaw and of tilt error, by the shift along x and
-//! by the height by which the part is low in the gripper, and outward by the added clearance.
+//! Offsets within `[-(2 + 4 / k), 1 + a / 50 + (21 - r) / 10]` mm insert, with `k` and `a` the
+//! stiffness in the compliance and assembly directions in N/mm and `r` the distance of the remote
+//! centre in mm; below, the plug jams, and above, it misses the opening. The lower end is divided by
+//! the factor on the plug-socket friction. Both ends move inward by 1 mm per degree of yaw and of
+//! tilt of the start, by the shift of the start along x and by the downward shift of the part in the
+//! gripper, and outward by the added clearance.
 
 use super::{Conditions, Followed, Grasp, Grasped, Rig, Trial};
 use crate::finger::Finger;
@@ -49,7 +50,7 @@ pub fn window_mm(finger: &Finger, conditions: &Conditions) -> (f64, f64) {
     (whole_nanometres(low + inward), whole_nanometres(high - inward))
 }
 
-/// Rounds a length, mm: a shift of 14 steps is 1.4 mm, not 1.4000000000000001.
+/// Rounds a length, mm, to nanometres: a shift of 14 steps is 1.4 mm, not 1.4000000000000001.
 fn whole_nanometres(mm: f64) -> f64 {
     (mm * 1e6).round() / 1e6
 }
@@ -69,7 +70,7 @@ impl Grasped for (FakeRig, Grasp<'_>) {
             above if above > high => Outcome::Failed(FailureClass::PlugMissed),
             _ => Outcome::Inserted,
         };
-        // Distance in mm to the nearer end.
+        // Signed distance to the nearer end, mm, as the margin.
         let margin = (offset_mm - low).min(high - offset_mm).clamp(-1.0, 1.0);
         let trial = Trial {
             outcome,

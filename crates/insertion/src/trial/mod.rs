@@ -39,7 +39,7 @@ pub struct PhaseEnd {
     pub tilt_deg: f64,
     /// Slip of the part in the grasp since the grasp, mm.
     pub slip_mm: f64,
-    /// Largest contact force plug-socket during the phase, N.
+    /// Largest contact force between plug and socket during the phase, N.
     pub peak_force_n: f64,
     /// Poses of the bodies, task frame, m; for pictures.
     #[serde(skip)]
@@ -145,8 +145,8 @@ const ZEROING_S: f64 = 0.2;
 
 /// A part held and tilted, ready for a trial at any offset.
 pub trait Grasped: Send + Sync {
-    /// Runs a trial with the start shifted by `offset` metres along y. It rests twice for `rest_s` seconds before the
-    /// search; samples are taken every `every_s` seconds from the second rest on.
+    /// Runs a trial with the start shifted by `offset` metres along y. The robot rests twice for `rest_s` seconds
+    /// before the search; samples are taken every `every_s` seconds from the second rest on.
     fn run(&self, offset: f64, every_s: Option<f64>, rest_s: f64) -> Followed;
 
     /// Returns the trial with the samples that a robot logs if it zeroes its sensor before the search.

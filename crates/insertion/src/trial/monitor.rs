@@ -17,8 +17,11 @@ const LOSS_FORCE: f64 = 0.01;
 /// Monitor of the filtered force and of the finger contacts.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct ContactMonitor {
+    /// Filtered force of the socket on the plug, N.
     pub force: Vector3<f64>,
+    /// Largest filtered force of the trial, N.
     pub peak_force: f64,
+    /// Largest filtered force of the phase, N.
     pub phase_peak: f64,
     /// Whether the leading edge is inside the opening; after the search, whether it was at the end of the search.
     pub entered: bool,
@@ -73,7 +76,7 @@ impl LeadingEdge {
         // A latch yields and does not guide the plug.
         let corners = task.plug.rigid().flat_map(|part| part.solid.corners());
         let corners: Vec<_> = corners.filter(|corner| corner.z < task.success.depth).collect();
-        // Fewer corners: all are checked in every step.
+        // All corners are checked in every step, so many are reduced to those of their hull.
         let reduced = if corners.len() > MAX_CORNERS { hull(&corners) } else { None };
         LeadingEdge {
             corners: reduced.map_or(corners, |(corners, _)| corners),

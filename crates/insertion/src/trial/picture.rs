@@ -1,5 +1,5 @@
 //! Pictures of a trial: plug, fingertips and socket at the end of each phase,
-//! seen along x (compliance-assembly plane) and along y (depth-assembly plane).
+//! seen along x (y-z plane: compliance and assembly directions) and along y (x-z plane).
 
 use super::{PhaseEnd, Trial};
 use crate::finger::Pad;
@@ -17,8 +17,9 @@ const SCALE: f64 = 3.2;
 /// Margin around the bodies of a panel, mm.
 const MARGIN: f64 = 3.0;
 const FONT: Font = Font::new(13.0);
-/// Height of the title and of the legend, pixels.
+/// Height of the title, pixels.
 const HEAD: f64 = 44.0;
+/// Height of the legend, pixels.
 const FOOT: f64 = 34.0;
 /// Length of an arrow, mm/N, and its maximum, mm.
 const ARROW: (f64, f64) = (0.15, 18.0);
@@ -29,7 +30,7 @@ const PLUG: &str = "#e8a33d";
 const FINGER: &str = "#5b8c5a";
 const FORCE: &str = "#b42318";
 
-/// Section of a view that a panel shows, mm.
+/// Range of coordinates that a panel shows, mm.
 #[derive(Clone, Copy)]
 struct Extent {
     /// Horizontal coordinate: 0 is x, 1 is y.
@@ -55,7 +56,7 @@ pub fn svg(task: &Task, pad: &Pad, trial: &Trial, label: &str) -> String {
         row.across = [row.across[0] - room, row.across[1] + room];
     }
     let column = rows[0].size()[0];
-    // The minimum is the width of the title.
+    // At least the width of the title.
     let width = (trial.phases.len().max(1) as f64 * column).max(560.0);
     let mut drawing = Drawing::default();
     drawing.white_background();

@@ -23,15 +23,15 @@ pub struct Frame {
     pub stage: Stage,
     /// Poses of plug and fingers, m.
     pub poses: Poses,
-    /// Poses of the jaws, m: equal to those of the fingers without deflection.
+    /// Poses of the jaws, m: a finger without deflection has the pose of its jaw.
     pub jaws: [Pose; 2],
-    /// Force of the socket on the plug, filtered like that of a wrist sensor, N.
+    /// Force of the socket on the plug, filtered like that of a wrist sensor (low-pass, 5 ms), N.
     pub force: Vector3<f64>,
     /// Slip of the part in the grasp since the grasp, m.
     pub slip: f64,
     /// Contact points of the socket on the plug.
     pub contacts: Vec<ContactPoint>,
-    /// Points at which the fingers press the plug.
+    /// Contact points of the fingers on the plug.
     pub grips: Vec<ContactPoint>,
 }
 
@@ -100,7 +100,7 @@ pub(super) struct Recorder {
 }
 
 impl Recorder {
-    /// Counts a step of `step_s` seconds and returns whether its end is to be recorded.
+    /// Counts a step of `step_s` seconds and returns whether to record the state at its end.
     pub fn is_due(&mut self, step_s: f64) -> bool {
         let every = ((INTERVAL / step_s).round() as usize).max(1);
         self.steps += 1;
@@ -121,13 +121,13 @@ pub struct Sample {
     pub tcp_tilt_deg: f64,
     /// Commanded position of the TCP, mm.
     pub target_mm: [f64; 3],
-    /// Force of the socket on the plug, filtered like that of a wrist sensor, N.
+    /// Force of the socket on the plug, filtered like that of a wrist sensor (low-pass, 5 ms), N.
     pub sensed_n: [f64; 3],
     /// Tip of the plug, mm.
     pub tip_mm: [f64; 3],
     /// Angle between the plug's axis and z, degrees.
     pub tilt_deg: f64,
-    /// Net contact force of the socket on the plug over the last step, N.
+    /// Net contact force of the socket on the plug over the last step, unfiltered, N.
     pub force_n: [f64; 3],
     /// Slip of the part in the grasp since the grasp, mm.
     pub slip_mm: f64,

@@ -33,7 +33,7 @@ pub enum RigError {
 }
 
 impl EngineRig {
-    /// Creates the rig for the paper's fingers.
+    /// Creates the rig for fingers of the paper's model.
     ///
     /// # Errors
     /// If the robot or the engine does not support the task.
@@ -79,7 +79,7 @@ impl EngineRig {
     }
 }
 
-/// Half of the width of the plate that is probed, m: no plug gets near its rim.
+/// Half of the width of the plate of the friction probe, m: no plug gets near its rim.
 const PLATE: f64 = 0.1;
 
 /// Returns the task with a plate in the socket's place, its top at z = 0.
@@ -134,7 +134,7 @@ struct GraspWithRetry<'a> {
     grasp: Grasp<'a>,
     recorded: bool,
     prepared: Prepared<'a>,
-    /// Attempt at half the step, once a trial has diverged.
+    /// Attempt at half the time step, once a trial has diverged.
     halved: OnceLock<Prepared<'a>>,
 }
 
@@ -164,6 +164,7 @@ impl GraspWithRetry<'_> {
 /// Attempt right before the search; every offset starts from a copy.
 struct Prepared<'a> {
     attempt: Attempt<'a>,
+    /// Result of grasp and approach.
     end: Result<(), Stop>,
     /// Attempt after the shared descent, if there is one.
     descended: OnceLock<Option<Attempt<'a>>>,

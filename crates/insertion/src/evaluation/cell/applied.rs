@@ -22,7 +22,7 @@ pub(in crate::evaluation) fn change(parameter: &Parameter, value: f64, specimen:
         Kind::Finger => {
             if let Some((number, unit)) = finger.number(&parameter.path) {
                 let own = *number / unit;
-                // A neutral value leaves the number as it is, bit for bit.
+                // A neutral value (shift 0 or factor 1) leaves the number bit-identical.
                 if parameter.transform == Transform::Value || value != parameter.neutral(own) {
                     *number = parameter.applied(own, value) * unit;
                 }
@@ -50,8 +50,8 @@ pub(in crate::evaluation) fn change(parameter: &Parameter, value: f64, specimen:
 }
 
 impl Robot {
-    /// Returns the numbers of a path, which are scaled together, and the SI value of its unit; no numbers if the
-    /// robot lacks them.
+    /// Returns the numbers of a path, which are scaled together, and the SI value of the path's unit; no numbers if
+    /// the robot lacks them.
     fn numbers(&mut self, path: &Path) -> (Vec<&mut f64>, f64) {
         let numbers = match (&**path, &mut self.drive) {
             ("robot.stop_force_n", _) => vec![&mut self.stop_force],
@@ -106,11 +106,11 @@ impl Evaluator {
         }
     }
 
-    /// Checks that the task of a cell, if the evaluator has it, has the paths of the cell's rows; `file` is named in
-    /// errors.
+    /// Checks that the task of a cell, if the evaluator has it, has the paths of the cell's parameters; `file` is named
+    /// in errors.
     ///
     /// # Errors
-    /// The first row with an unknown path, and the nearest known one.
+    /// The first parameter with an unknown path, and the nearest known path.
     pub fn check_paths(&self, cell: &Priors, file: &str) -> Result<(), InputError> {
         let own = |template: &&Template| cell.task.as_ref() == Some(&template.task.name);
         for template in self.templates.iter().filter(own) {
@@ -130,7 +130,7 @@ impl Evaluator {
     /// Checks the values of the evaluator's cell on each task; `file` is named in errors.
     ///
     /// # Errors
-    /// The first row with an invalid value, or the error of [`Evaluator::check_paths`].
+    /// The first parameter with an invalid value, or the error of [`Evaluator::check_paths`].
     pub fn check_cell(&self, file: &str) -> Result<(), InputError> {
         let Some(cell) = &self.cell else { return Ok(()) };
         self.check_paths(cell, file)?;
@@ -156,7 +156,7 @@ impl Evaluator {
         })
     }
 
-    /// Returns the rows of the cell that apply to a task, by default to the first task, with their nominal values.
+    /// Returns the parameters of the cell that apply to a task, by default the first, with their nominal values.
     pub(in crate::evaluation) fn rows<'a>(
         &'a self,
         template: Option<&'a Template>,
@@ -166,7 +166,7 @@ impl Evaluator {
         cell.of(task).map(|row| (row, row.middle())).collect()
     }
 
-    /// Returns a design with the values of these rows for the numbers that it does not set.
+    /// Returns a design with the values of these parameters of a cell for the numbers that it does not set.
     pub(in crate::evaluation) fn completed(
         &self,
         template: Option<&Template>,
@@ -185,7 +185,7 @@ impl Evaluator {
         set
     }
 
-    /// Applies values of parameters to a design, in addition to those of the cell; returns its specimen.
+    /// Returns the specimen of a design with these values of parameters, in addition to those of the cell.
     /// The stiffness is predicted unless given.
     ///
     /// # Errors
@@ -214,8 +214,8 @@ impl Evaluator {
         Ok(specimen)
     }
 
-    /// Returns the specimen with these values of another cell's rows. The rows of the evaluator's cell whose
-    /// paths the other cell lacks still apply.
+    /// Returns the specimen with these values of another cell's parameters. The parameters of the evaluator's cell
+    /// whose paths the other cell lacks still apply.
     pub(in crate::evaluation) fn in_cell(
         &self,
         specimen: &Specimen,

@@ -1,5 +1,5 @@
-//! Parameters of a cell beyond the task file: priors (`priors/bench.toml`), or values identified from logs
-//! (`cell.toml`) with the robot of the identification.
+//! Parameters of a robot cell that a task file does not set: priors (`priors/bench.toml`), or values identified from
+//! robot logs (`cell.toml`) with the robot of the identification.
 
 mod applied;
 
@@ -18,13 +18,13 @@ pub struct Priors {
     pub name: String,
     /// Description in one line.
     pub description: String,
-    /// Task of the rows with `shared = false`; `None` if each task has its own.
+    /// Task to which the parameters with `shared = false` apply; `None` if they apply to every task.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub task: Option<String>,
-    /// Contents of the cell's robot file.
+    /// Contents of the cell's robot file, if the file contains one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub robot: Option<toml::Table>,
-    /// Parameters.
+    /// Priors or identified values of the parameters.
     #[serde(rename = "parameter")]
     pub parameters: Vec<Parameter>,
 }
@@ -38,10 +38,10 @@ impl Priors {
         read::<Priors>(text, file)?.checked(file)
     }
 
-    /// Checks every row and the robot; `file` is named in errors.
+    /// Checks every parameter and the robot; `file` is named in errors.
     ///
     /// # Errors
-    /// If a row or the robot is invalid; the error names the first invalid one and states what is accepted.
+    /// If a parameter or the robot is invalid; the error names the first invalid one and states what is accepted.
     pub fn checked(self, file: &str) -> Result<Self, InputError> {
         let (all, check) = (&self.parameters, Check { file });
         for (i, parameter) in all.iter().enumerate() {
@@ -78,19 +78,19 @@ impl Priors {
         self.robot.as_ref().map(toml::Table::to_string)
     }
 
-    /// Returns the rows that apply to a task.
+    /// Returns the parameters that apply to a task.
     pub fn of<'a>(&'a self, task: &'a str) -> impl Iterator<Item = &'a Parameter> {
         let own = self.task.as_ref().is_none_or(|own| own == task);
         self.parameters.iter().filter(move |row| row.shared || own)
     }
 
-    /// Returns the rows that were identified on another task and do not apply to this one.
+    /// Returns the parameters that were identified on another task and do not apply to this one.
     pub fn not_of<'a>(&'a self, task: &'a str) -> impl Iterator<Item = &'a Parameter> {
         let own = self.task.as_ref().is_none_or(|own| own == task);
         self.parameters.iter().filter(move |row| !row.shared && !own)
     }
 
-    /// Returns a sentence that names the rows that do not apply to a task; `None` if all do.
+    /// Returns a sentence that names the parameters that do not apply to a task; `None` if all do.
     pub fn remark(&self, task: &str) -> Option<String> {
         let names: Vec<_> = self.not_of(task).map(|row| &*row.path).collect();
         let own = self.task.as_ref().filter(|_| !names.is_empty())?;

@@ -11,7 +11,7 @@ use std::str::FromStr;
 pub enum Measure {
     /// Width of the tolerance window, mm.
     Range,
-    /// Twice the smaller side of the window, mm: for robot errors in both directions.
+    /// Twice the smaller side of the window about the nominal start, mm: for errors of either sign.
     CentredRange,
     /// Share of the trials under sampled errors that insert, 0 to 1.
     SuccessRate,
@@ -24,7 +24,7 @@ pub enum Measure {
 }
 
 impl Measure {
-    /// All measures, in the order of messages.
+    /// All measures, in the order in which messages list them.
     pub const ALL: [Measure; 6] = [
         Measure::Range,
         Measure::CentredRange,
@@ -71,8 +71,8 @@ impl Measure {
         matches!(self, Measure::SuccessRate | Measure::RobustRange)
     }
 
-    /// Returns the standard deviation of the rounding error, in the unit of the measure: ranges have steps of 0.1 mm,
-    /// success rates steps of one trial; forces and slips are not rounded.
+    /// Returns the standard deviation of the rounding error, in the unit of the measure: windows have a grid of 0.1 mm,
+    /// success rates are multiples of `1 / trials`; forces and slips are not rounded.
     pub fn rounding(self, trials: u32) -> f64 {
         match self {
             Measure::PeakForce | Measure::Slip => 0.0,
@@ -81,9 +81,9 @@ impl Measure {
         }
     }
 
-    /// Returns the value in the unit of the measure; `None` if it was not measured or the nominal start diverges. If
-    /// the nominal start fails, the range is 0 and there is neither force nor slip. A diverged trial ends a window like
-    /// a failed one. The success rate of a lost race is its upper bound.
+    /// Returns the value in the unit of the measure; `None` if it was not measured. If the nominal start fails, the
+    /// range is 0 and there is neither force nor slip; if it diverges, there is no range either. A diverged trial ends
+    /// a window like a failed one. The success rate of a lost race is its upper bound.
     pub fn value(self, evaluation: &Evaluation) -> Option<f64> {
         let window = &evaluation.window;
         let value = match (window.nominal, self) {

@@ -54,7 +54,7 @@ impl Objectives {
         &self.0
     }
 
-    /// Returns the first objective, the one that plots show.
+    /// Returns the first objective, which plots show.
     pub fn first(&self) -> Measure {
         self.0[0]
     }
@@ -179,11 +179,10 @@ impl Goals {
     }
 
     /// Returns the values for an optimizer: those of [`score`](Goals::score) with the sign for which larger is
-    /// better, interpolated within the grid step. `None` if there is no score.
+    /// better, interpolated within the grid step beyond each end of a window. `None` if there is no score.
     ///
     /// Windows are measured on a grid of 0.1 mm, so many designs have equal ranges, and all whose nominal start fails
-    /// have none. Optimizers therefore get values interpolated within the last grid step; those of the study stay
-    /// on the grid.
+    /// have a range of 0. The recorded values of a study stay on the grid.
     pub fn interpolated(&self, tasks: &[&Evaluation]) -> Option<Vec<f64>> {
         let of = |&measure: &Measure| {
             let value =
@@ -202,9 +201,9 @@ impl Score {
     }
 }
 
-/// Returns the correction of a range within the grid step, mm. At each end it is half of the share of the next step
-/// that still inserts; for a failing nominal start it is the negative margin; for measures that are not on the grid it
-/// is 0. It is less than one step, so the order of different ranges does not change.
+/// Returns the correction of a range within the grid step, mm. For a range it is the mean of the end shares times the
+/// step; for a centred range, the share of the smaller side; for a failing nominal start, its negative margin. It is 0
+/// for other measures. It is at most one step, so it does not reverse the order of different ranges.
 fn grid_correction(measure: Measure, evaluation: &Evaluation) -> f64 {
     if !matches!(measure, Measure::Range | Measure::CentredRange) {
         return 0.0;

@@ -1,7 +1,7 @@
-//! Firm window: offsets that still insert under small variations of friction, start and step.
+//! Firm window: offsets that still insert under small variations of friction, start and time step.
 //!
-//! From each end of the window the search goes inward in steps of 0.1 mm to the first offset at which all
-//! repeats insert. Offsets between the two ends are not repeated.
+//! From each end of the tolerance window the search goes inward in steps of 0.1 mm to the first offset at which
+//! all repeats insert. Offsets between the two ends are not repeated.
 
 use super::repeat::Repeats;
 use crate::evaluation::{OffsetStep, Window, grid_mm};
@@ -10,19 +10,19 @@ use serde::{Deserialize, Serialize};
 /// Number of repeats at each end of the window.
 pub const REPEATS: u32 = 6;
 
-/// Outermost offsets at which all repeats insert, in grid steps.
+/// Outermost offsets on either side at which all repeats insert, in grid steps from the nominal start.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct FirmWindow {
-    /// Outermost step at the negative end.
+    /// Offset at the negative end.
     pub negative_steps: OffsetStep,
-    /// Outermost step at the positive end.
+    /// Offset at the positive end.
     pub positive_steps: OffsetStep,
 }
 
 /// Result of the repeats at both ends of a window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct FirmResult {
-    /// Firm window; `None` if there is no offset on one side at which all repeats insert.
+    /// Firm window; `None` if every offset on one side fails in some repeat.
     pub window: Option<FirmWindow>,
     /// Number of trials in all repeats.
     pub trials: u32,
@@ -44,7 +44,7 @@ impl FirmResult {
         self.window.map(|window| [window.negative_steps, window.positive_steps].map(grid_mm))
     }
 
-    /// Returns the window, narrowed to the firm window.
+    /// Returns the window with the ends of the firm window; both are 0 without one.
     pub fn narrowed(&self, window: &Window) -> Window {
         let FirmWindow { negative_steps, positive_steps } = self.window.unwrap_or_default();
         Window { negative_steps, positive_steps, ..window.clone() }
@@ -64,8 +64,8 @@ pub fn measure(repeats: &Repeats, window: &Window) -> FirmResult {
     FirmResult { window: found, trials: below + above }
 }
 
-/// Returns the outermost of the steps `from` to 0 at which all repeats insert, and the number of trials. The
-/// repeat that failed last comes first, since it is the likeliest to fail again.
+/// Returns the outermost of the grid steps `from` to 0, in the direction `sign`, at which all repeats insert, and the
+/// number of trials. The repeat that failed at one step is tried first at the next, where it is the likeliest to fail.
 fn outermost_step(
     repeats: &Repeats,
     from: OffsetStep,
@@ -109,7 +109,7 @@ mod tests {
         };
         assert!(all(firm.negative_steps) && all(firm.positive_steps));
         assert!(!all(firm.negative_steps - 1) && !all(firm.positive_steps + 1));
-        // Mostly one trial for each step that fails, a hundred for each of the two that insert.
+        // Mostly one trial for each failing step, a hundred for each of the two steps that insert.
         assert!((200..320).contains(&found.trials), "{}", found.trials);
         let narrowed = found.narrowed(&window);
         assert_eq!(narrowed.negative_steps, firm.negative_steps);

@@ -18,27 +18,28 @@ use ask_tell::statistics::{mean, sorted};
 use race::Race;
 use rayon::prelude::*;
 
-/// Plan of the trials in addition to the window: their settings, and the draws that all designs of a study share.
+/// Plan of the trials under random errors, in addition to the window search: their settings, and the draws, which all
+/// designs of a study share.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Plan {
     success: Option<(Vec<Draw>, SuccessSettings)>,
     robust: Option<(Vec<Draw>, RobustSettings)>,
-    /// Race for the success rate, if there is one.
+    /// Early stop of the success-rate trials of designs that cannot be the best.
     race: Option<Race>,
-    /// Cell whose rows are drawn, with their values in each draw.
+    /// Cell whose parameters are drawn, and their values in each draw.
     pub(super) cells: Option<(Priors, Vec<Vec<f64>>)>,
 }
 
-/// Rig and nominal finger of one draw.
+/// Rig and nominal finger of one draw of the cell's parameters.
 pub type Drawn = (Box<dyn Rig>, Finger);
 /// A draw's rig, grasp and offset, m.
 type Insertion<'a> = (&'a dyn Rig, Grasp<'a>, f64);
 
 impl Plan {
-    /// Plan of the window alone.
+    /// Plan of the window search alone.
     pub const WINDOW: Plan = Plan { success: None, robust: None, race: None, cells: None };
 
-    /// Returns the plan for success rates, robust ranges or both; `seed` identifies the random streams.
+    /// Returns the plan for success rates, robust ranges or both; `seed` is the seed of the draws.
     pub fn new(uncertainty: &Uncertainty, seed: u64, success: bool, robust: bool) -> Self {
         let draws = |count| draws(&uncertainty.errors, seed, count);
         let (rate, range) = (uncertainty.success, uncertainty.robust);
@@ -60,8 +61,8 @@ impl Plan {
     }
 }
 
-/// Measures a grasp according to a plan; `predicted` is the stiffness of the fingers. Draws without an entry in
-/// `cells` use `rig`.
+/// Measures a grasp according to a plan; `predicted` is the stiffness of the fingers. `cells` has the rig and finger of
+/// each draw of the cell's parameters; draws without an entry use `rig` and the finger of `grasp`.
 pub fn evaluate(
     rig: &dyn Rig,
     grasp: Grasp,
@@ -110,7 +111,7 @@ fn robust_range(drawn: &[Insertion], settings: &RobustSettings) -> RobustRange {
     robust
 }
 
-/// Returns the statistic, mm; `None` with fewer than two ranges.
+/// Returns the statistic of the ranges, mm; `None` with fewer than two ranges.
 fn statistic(robust: &RobustRange, statistic: Statistic) -> Option<f64> {
     let count = robust.ranges_mm.len();
     if count < 2 {
@@ -134,7 +135,7 @@ mod tests {
     use crate::trial::fake::{FakeRig, window_mm};
     use input::units::MM;
 
-    /// Fingers of 3 N/mm and this assembly stiffness (N/mm) drawn under the shipped errors.
+    /// Draws, from the shipped distribution, of a finger with 3 N/mm and this assembly stiffness, N/mm.
     fn drawn(rig: &dyn Rig, assembly: f64, count: u32) -> (Uncertainty, Vec<Insertion<'_>>) {
         let predicted = predicted([3.0, 1.0], [assembly, 2.0]);
         let nominal = Grasp::of(&finger(3.0, assembly));
@@ -152,7 +153,7 @@ mod tests {
         for (_, grasp, offset) in &drawn {
             let (low, high) = window_mm(&grasp.finger, &grasp.conditions);
             let offset = offset / MM;
-            // If the errors close the window, the plug jams on its whole lower side.
+            // If the errors close the window, the plug jams at all offsets below `low`.
             below += u32::from(offset < low);
             above += u32::from(offset >= low && offset > high);
         }

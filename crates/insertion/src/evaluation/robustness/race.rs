@@ -1,27 +1,27 @@
 //! Racing on the success rate: the trials of a design stop early if it can no longer reach the best design.
 //!
-//! All designs are evaluated under the same draws, so the criterion is exact: a design is eliminated once
-//! its rate would stay below the bar even if all remaining draws inserted. The point of elimination
-//! depends only on its own outcomes, the bar and the order of the draws.
+//! All designs are evaluated under the same draws, so the criterion is exact: a design is eliminated (has lost the
+//! race) once its rate would stay below the target rate even if all remaining draws inserted. The point of
+//! elimination depends only on its own outcomes, the target rate and the order of the draws.
 
 use crate::evaluation::SuccessRate;
 use crate::outcome::Outcome;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-/// Target of a design and the order of its draws.
+/// Target rate of a design and the order of its draws.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Race {
-    /// Success rate to be reached, 0 to 1. With several tasks, each must reach it.
+    /// Target: success rate of the best design so far, 0 to 1. With several tasks, each must reach it.
     pub bar_share: f64,
-    /// Number of draws.
+    /// Number of draws of the best design.
     pub draws: u32,
-    /// First draws, by number from 0; the others follow in their order.
+    /// Indices of the draws to evaluate first; the others follow in ascending order.
     pub first: Vec<u32>,
 }
 
-/// Evaluates the draws in the order of the race and counts their outcomes until the bar is out of reach. Draws
+/// Evaluates the draws in the order of the race and counts their outcomes until the target rate is out of reach. Draws
 /// beyond that point are not counted, so the result does not depend on the number of threads.
 pub fn run(
     draws: u32,

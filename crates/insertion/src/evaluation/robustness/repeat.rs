@@ -1,4 +1,4 @@
-//! Repeats of a trial with small uncontrolled changes.
+//! Repeats of a trial under small random changes of friction and start, at two time steps.
 
 use crate::evaluation::tolerance;
 use crate::evaluation::{OffsetStep, Window, grid_mm};
@@ -12,24 +12,25 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Largest relative change of the two coefficients of friction, which vary independently.
 pub const FRICTION_SHARE: f64 = 0.1;
-/// Largest shift of the start, m.
+/// Largest shift of the start along y, m.
 pub const START_SHIFT: f64 = 0.02 * MM;
 /// Name of the stream of random numbers.
 const PURPOSE: &str = "repeat";
-/// Largest distance from an end of a window at which its band is searched for, in grid steps.
+/// Largest distance from an end of a window to which the search for its [`Band`] extends, in grid steps.
 const REACH: OffsetStep = 20;
 /// Spacing of the offsets tried between the bands, in grid steps.
 const INSIDE_STRIDE: OffsetStep = 5;
 
 /// Repeated grasps of a finger under slightly different conditions.
 pub struct Repeats<'a> {
+    /// Grasp and shift of the start along y, m, of each repeat.
     runs: Vec<(Box<dyn Grasped + 'a>, f64)>,
     stop: &'a AtomicBool,
 }
 
 impl<'a> Repeats<'a> {
-    /// Grasps `count` times with friction within 10 % and start within 0.02 mm, both uniform, in the two rigs
-    /// alternately: the first has the production time step, the second half of it.
+    /// Grasps `count` times with the friction varied by up to 10 % and the start by up to 0.02 mm (uniform), in the two
+    /// rigs alternately: the first has the production time step, the second half of it.
     pub fn new(rigs: [&'a dyn Rig; 2], grasp: Grasp<'a>, seed: u64, count: u32) -> Self {
         let run = |index: u32| {
             let mut random = stream(seed, u64::from(index), PURPOSE);
@@ -42,7 +43,7 @@ impl<'a> Repeats<'a> {
         Repeats { runs: (0..count).into_par_iter().map(run).collect(), stop: grasp.stop }
     }
 
-    /// Returns the outcome of each run with the start shifted by an additional `offset`, m.
+    /// Returns the outcome of each repeat with the start shifted by an additional `offset`, m.
     pub fn outcomes(&self, offset: f64) -> Vec<Outcome> {
         let trial = |(grasped, shift): &(Box<dyn Grasped + 'a>, f64)| {
             // Checked here, since even a cancelled trial copies its world first.
@@ -56,25 +57,24 @@ impl<'a> Repeats<'a> {
         self.runs.len()
     }
 
-    /// Returns whether a run inserts with its start shifted by a number of grid steps.
+    /// Returns whether a repeat, by its index, inserts with its start shifted by a number of grid steps.
     pub(super) fn inserts(&self, run: usize, step: OffsetStep) -> bool {
         let (grasped, shift) = &self.runs[run];
         grasped.trial(tolerance::offset(step) + shift).outcome == Outcome::Inserted
     }
 
-    /// Returns the number of runs that insert with the start shifted by a number of grid steps.
+    /// Returns the number of repeats that insert with the start shifted by a number of grid steps.
     fn inserted(&self, step: OffsetStep) -> usize {
         let outcomes = self.outcomes(tolerance::offset(step));
         outcomes.iter().filter(|&&outcome| outcome == Outcome::Inserted).count()
     }
 
-    /// Returns the band at one end of a window in which the outcome depends on the changes; `sign` is the direction of
-    /// the end, -1 or 1.
+    /// Returns the band at the negative (`sign` -1) or positive (`sign` 1) end of a window.
     fn band(&self, window: &Window, sign: OffsetStep) -> Band {
         let end = if sign < 0 { -window.negative_steps } else { window.positive_steps };
         let inserted = |step: OffsetStep| self.inserted(sign * step);
         let inward = (0..=REACH.min(end)).map(|away| end - away);
-        // From outside, since some runs may insert again beyond a gap.
+        // From outside, since some repeats may insert again beyond a gap.
         let outward = (1..=REACH).rev().map(|away| end + away);
         let mut still = outward.skip_while(|&step| inserted(step) == 0);
         let last = still.next().unwrap_or(end);
@@ -101,12 +101,13 @@ impl<'a> Repeats<'a> {
 pub struct Band {
     /// The outermost offset at which all repeats insert.
     surely_inserts: Option<OffsetStep>,
-    /// The innermost offset from which, as far as 2 mm beyond the end, no repeat inserts.
+    /// The innermost offset at and beyond which no repeat inserts, as far as 2 mm beyond the end.
     surely_fails: Option<OffsetStep>,
 }
 
 impl Band {
-    /// Returns the width less one grid step of 0.1 mm, mm; `None` if the band extends beyond 2 mm on one side.
+    /// Returns the width, mm: 0.1 mm for each uncertain offset; `None` if the band extends farther than 2 mm from the
+    /// end of the window.
     pub fn width_mm(&self) -> Option<f64> {
         Some(grid_mm(self.surely_fails? - self.surely_inserts? - 1))
     }
@@ -127,7 +128,7 @@ pub struct Bands {
 
 impl Bands {
     /// Returns the ends of the firm window, mm: the outermost offsets at which all repeats insert; `None` if a band
-    /// extends beyond 2 mm inwards.
+    /// extends farther than 2 mm inward.
     pub fn firm_mm(&self) -> Option<[f64; 2]> {
         let [below, above] = [self.negative, self.positive].map(|band| band.surely_inserts);
         Some([grid_mm(-below?), grid_mm(above?)])

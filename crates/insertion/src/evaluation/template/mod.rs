@@ -1,13 +1,13 @@
 //! Templates of tasks, for designs that set other parameters besides the infill (co-design).
 //!
-//! A key of a space is `infill_density_percent`, `infill_direction_deg`, or a path to one number:
+//! A key of a search space is `infill_density_percent`, `infill_direction_deg`, or a path to one number:
 //!
 //! - `task.`, then the path in the task file as described at [`NumberFile`]
 //!   (`task.strategy.phase.side.speed_mm_per_s`, `task.strategy.phase.side.move_mm.y`);
 //! - `finger.`, then a number of the finger model (`finger.rcc_mm`) or of the finger file
 //!   (`finger.skin.thickness_mm`).
 //!
-//! Values are in the unit of the key and are subject to the checks of the task.
+//! Values are in the unit of the key and are subject to the checks of the task file or finger file.
 
 pub mod printable;
 mod space;
@@ -76,7 +76,8 @@ impl Template {
         Ok(Template { numbers: NumberFile::read("task", &document)?, task })
     }
 
-    /// Returns the task with the values of a design, and its finger with the given stiffness at the pad.
+    /// Returns the task with the values of a design, and its finger with the stiffness `at_pad`, which acts at the pad
+    /// or, in the paper's finger model, at the remote centre.
     ///
     /// # Errors
     /// If a key does not exist, a value is invalid, or the finger cannot be built.

@@ -1,4 +1,4 @@
-//! Checks that every finger of a space can be printed and has springs, before the first one is simulated.
+//! Checks, before a study starts, that every finger of a space can be printed and represented by springs.
 
 use super::is_infill;
 use super::space::{each_corner, each_extreme};

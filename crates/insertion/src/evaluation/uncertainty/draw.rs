@@ -13,9 +13,9 @@ use rand::RngExt;
 
 /// Random stream of all errors except the shift of the start along x.
 const PURPOSE: &str = "errors";
-/// Random stream of the shift of the start along x, separate so that the other errors keep their values.
+/// Random stream of the shift of the start along x; a separate stream keeps the values of the other errors.
 const PURPOSE_ACROSS: &str = "error of the start along x";
-/// Path of the downward shift of the part in the gripper, 0 or above.
+/// Path of the downward shift of the part in the gripper; the shift is 0 or above.
 const GRASP_LOW: &str = "cell.grasp_low_mm";
 
 /// Random errors of one insertion. They do not depend on the design, so that designs are compared under
@@ -24,11 +24,11 @@ const GRASP_LOW: &str = "cell.grasp_low_mm";
 pub struct Draw {
     /// Shift of the start along y, m.
     pub offset: f64,
-    /// Deviations of the cell from the task file.
+    /// Deviations of the trial from the task file.
     pub conditions: Conditions,
-    /// Standard normal deviates of the compliance and the assembly stiffness.
+    /// Standard normal deviates of the stiffness in the compliance and assembly directions.
     stiffness: [f64; 2],
-    /// Spread of the stiffness, in standard deviations of the stiffness model.
+    /// Factor on the standard deviation of the stiffness prediction.
     stiffness_sd_factor: f64,
 }
 
@@ -82,7 +82,7 @@ impl Draw {
                 GRASP_LOW => conditions.grasp_low = value * MM,
                 "cell.compliance_error_sd" => draw.stiffness[0] = value,
                 "cell.assembly_error_sd" => draw.stiffness[1] = value,
-                // A test checks that the paths above are those of the table of numbers.
+                // A test checks that the paths above are those of `parameters::numbers`.
                 _ => (),
             }
         }

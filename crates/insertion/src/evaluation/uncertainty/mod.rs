@@ -1,4 +1,5 @@
-//! Distribution of the random errors of an insertion, for success rate and robust range.
+//! Distribution of the random errors of an insertion, and settings of the two measures under these errors: the success
+//! rate, and the robust range (a pessimistic statistic of the widths of the tolerance windows).
 
 mod draw;
 
@@ -27,22 +28,22 @@ pub struct Uncertainty {
     pub success: SuccessSettings,
     /// Settings of robust-range measurements.
     pub robust: RobustSettings,
-    /// Cell whose parameters are drawn instead of errors.
+    /// Robot cell whose uncertain parameters are drawn; `errors` are 0 then.
     pub cell: Option<Priors>,
 }
 
-/// Spread of each error, with the source of the values; 0 for none.
+/// Spread of each error, with the source of the values; a spread of 0 leaves the error out.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Errors {
-    /// Start of the insertion.
+    /// Position of the start.
     pub offset: OffsetSpread,
     /// Rotation of the socket.
     pub yaw: YawSpread,
-    /// Both coefficients of friction.
+    /// Coefficients of friction finger-plug and plug-socket.
     pub friction: FrictionSpread,
-    /// Both stiffnesses.
+    /// Stiffness of the fingers in the compliance and assembly directions.
     pub stiffness: StiffnessSpread,
-    /// Width of the opening.
+    /// Width of the socket's opening.
     pub clearance: ClearanceSpread,
     /// Position of the part in the gripper.
     pub grasp: GraspSpread,
@@ -62,20 +63,21 @@ pub struct SuccessSettings {
 /// Settings of a robust-range measurement.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RobustSettings {
-    /// Number of windows per design.
+    /// Number of tolerance windows per design.
     pub samples: u32,
-    /// Statistic of their ranges.
+    /// Statistic of the widths of the windows.
     pub statistic: Statistic,
     /// Search for the ends of each window.
     pub search: Search,
 }
 
-/// Statistic of a sample of ranges.
+/// Statistic of a sample of ranges (widths of tolerance windows).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Statistic {
     /// Mean minus this number of standard deviations.
     MeanMinusSd(f64),
-    /// Mean of the lowest samples (conditional value at risk): this share, 0 to 1, of all samples, at least one.
+    /// Mean of the lowest ranges (conditional value at risk); the value is their share of the sample, 0 to 1. At least
+    /// one range is used.
     LowerTail(f64),
 }
 
@@ -95,14 +97,14 @@ struct RawUncertainty {
     robust_range: RawRobust,
 }
 
-/// Spread of the start of the insertion.
+/// Spread of the position of the start.
 #[derive(Debug, Clone, PartialEq, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct OffsetSpread {
-    /// Standard deviation along y, normal, m.
+    /// Standard deviation of the normal distribution along y, m.
     #[serde(rename = "sd_mm", deserialize_with = "mm")]
     pub sd: f64,
-    /// Standard deviation along x, normal, m.
+    /// Standard deviation of the normal distribution along x, m.
     #[serde(rename = "across_sd_mm", default, deserialize_with = "mm")]
     pub across_sd: f64,
     source: String,
@@ -112,36 +114,36 @@ pub struct OffsetSpread {
 #[derive(Debug, Clone, PartialEq, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct YawSpread {
-    /// Standard deviation, normal, rad.
+    /// Standard deviation of the normal distribution, rad.
     #[serde(rename = "sd_deg", deserialize_with = "deg")]
     pub sd: f64,
     source: String,
 }
 
-/// Spread of both coefficients of friction, each uniform.
+/// Spread of the coefficients of friction finger-plug and plug-socket: independent uniform distributions.
 #[derive(Debug, Clone, PartialEq, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FrictionSpread {
-    /// Half the width, as a share of the nominal value.
+    /// Half the width of the distribution, as a share of the nominal value.
     #[serde(rename = "half_width_percent", deserialize_with = "percent")]
     pub half_width: f64,
     source: String,
 }
 
-/// Spread of both stiffnesses, each lognormal.
+/// Spread of the stiffness in the compliance and assembly directions: independent lognormal distributions.
 #[derive(Debug, Clone, PartialEq, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StiffnessSpread {
-    /// Spread, in standard deviations of the stiffness model.
+    /// Standard deviation, as a multiple of that of the stiffness prediction.
     pub sd_factor: f64,
     source: String,
 }
 
-/// Spread of the width of the opening, uniform.
+/// Spread of the width of the socket's opening: a uniform distribution.
 #[derive(Debug, Clone, PartialEq, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ClearanceSpread {
-    /// Half the width, m.
+    /// Half the width of the distribution, m.
     #[serde(rename = "half_width_mm", deserialize_with = "mm")]
     pub half_width: f64,
     source: String,
@@ -151,10 +153,10 @@ pub struct ClearanceSpread {
 #[derive(Debug, Clone, PartialEq, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GraspSpread {
-    /// Standard deviation along x, normal, m.
+    /// Standard deviation of the normal distribution along x, m.
     #[serde(rename = "across_sd_mm", deserialize_with = "mm")]
     pub across_sd: f64,
-    /// Largest downward shift, uniform from 0, m.
+    /// Largest downward shift, m; the distribution is uniform from 0.
     #[serde(rename = "low_max_mm", deserialize_with = "mm")]
     pub low_max: f64,
     source: String,
@@ -179,8 +181,8 @@ enum RawStatistic {
 }
 
 impl Uncertainty {
-    /// Reads and checks a distribution; `file` is named in errors. A cell file is the distribution of its parameters,
-    /// with the settings of the shipped file and no other errors.
+    /// Reads and checks a distribution; `file` is named in errors. The text may also be a cell file: its parameters are
+    /// drawn from their priors, all other errors are 0, and the settings are those of the shipped uncertainty file.
     ///
     /// # Errors
     /// If the text is not an uncertainty or cell file, or a value is out of range.
@@ -209,7 +211,7 @@ impl Uncertainty {
         })
     }
 
-    /// Returns the distribution of the parameters of a cell.
+    /// Returns the distribution of the parameters of a robot cell, with the settings of the shipped uncertainty file.
     fn of_cell(cell: Priors, file: &str) -> Result<Self, InputError> {
         if let Some(row) = cell.parameters.iter().find(|row| is_shape(&row.path)) {
             let problem =

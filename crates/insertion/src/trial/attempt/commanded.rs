@@ -7,7 +7,7 @@ use crate::trial::record::Trace;
 use input::units::MM;
 use nalgebra::Vector3;
 
-/// Commanded trajectory of the TCP, task frame: targets at increasing times.
+/// Commanded trajectory of the TCP, task frame: targets at increasing times, s.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trajectory {
     times: Vec<f64>,
@@ -41,8 +41,8 @@ impl Trajectory {
         self.targets[after - 1].towards(&self.targets[after], share)
     }
 
-    /// Returns the time at which the push begins, s from the start: that of the last descent if it is long enough,
-    /// else the end.
+    /// Returns the time at which the push begins, s from the start: the beginning of the last descent if it is longer
+    /// than `MIN_PUSH`, else the end of the trajectory.
     pub fn push_start(&self) -> f64 {
         let heights: Vec<f64> = self.targets.iter().map(|target| target.position.z).collect();
         let last = heights.len() - 1;

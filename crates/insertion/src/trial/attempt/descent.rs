@@ -12,8 +12,7 @@ const MIN_CLEARANCE: f64 = 0.25 * MM;
 
 impl<'a> Attempt<'a> {
     /// Returns a copy that has descended until just before the plug could touch the socket at any offset or rotation
-    /// about z. `None` if the search does not begin with a touch, fails in the air or descends too
-    /// fast.
+    /// about z. `None` if the search does not begin with a move until touch, fails in the air or descends too fast.
     pub fn descended(&self) -> Option<Attempt<'a>> {
         let phase =
             self.task.strategy.phases.iter().find(|phase| phase.stage != Stage::Approach)?;

@@ -1,4 +1,4 @@
-//! A plug or a socket as a set of convex parts: overlaps, gaps, extents, clipping.
+//! Plug or socket as a set of convex parts: overlaps, gaps, extents, clipping.
 
 use contact::scene::Pose;
 use contact::shapes;
@@ -16,9 +16,9 @@ use std::borrow::Borrow;
 /// Scale of lengths for parry, whose tolerances suit bodies of size 1: millimetres per metre.
 const MILLIMETRES: f64 = 1.0 / MM;
 
-/// A body of convex parts in its own frame.
+/// Body of convex parts in its own frame.
 pub struct ConvexBody<'a> {
-    /// Parts of the task, body frame, m.
+    /// Parts, body frame, m.
     pub parts: &'a [Part],
     shapes: Vec<PlacedShape>,
     /// Tree of the bounding boxes of the parts, mm.
@@ -70,15 +70,14 @@ impl<'a> ConvexBody<'a> {
         ConvexBody { latch, ..ConvexBody::new(&plug.parts) }
     }
 
-    /// Returns the deepest overlap, at a pose in the frame of another body, with that body; overlaps of the latch are
-    /// ignored.
+    /// Returns the deepest overlap with another body at the pose `own` in its frame; overlaps of the latch are ignored.
     pub fn overlap(&self, own: &Pose, other: &ConvexBody) -> Option<Overlap> {
         let stiff = |overlap: &Overlap| !self.latch.contains(&overlap.parts[0]);
         let overlaps = self.overlaps(own, other).filter(stiff);
         overlaps.max_by(|a, b| a.depth.total_cmp(&b.depth))
     }
 
-    /// Returns all overlaps, at a pose in the frame of another body, with that body, in the order of the parts.
+    /// Returns all overlaps with another body at the pose `own` in its frame, in the order of the parts.
     pub fn overlaps(&self, own: &Pose, other: &ConvexBody) -> impl Iterator<Item = Overlap> {
         self.pairs_within(0.0, own, other).into_iter().filter_map(move |parts| {
             let [first, second] = [&self.shapes[parts[0]], &other.shapes[parts[1]]];
@@ -89,8 +88,8 @@ impl<'a> ConvexBody<'a> {
         })
     }
 
-    /// Returns the smallest gap to another body, m (0 for an overlap), and its place in the frame of that body, among
-    /// the gaps below `wide`, m, at places that `counts` accepts.
+    /// Returns the smallest gap to another body at the pose `own` in its frame, m (0 for an overlap), and its place in
+    /// that frame, among the gaps below `wide`, m, at places that `counts` accepts.
     pub fn gap(
         &self,
         own: &Pose,
@@ -176,7 +175,8 @@ impl PlacedShape {
         part.transform_by(&shapes::pose(at, MILLIMETRES))
     }
 
-    /// Returns the contact, at a pose in the frame of another body, with a part of that body within a distance; in mm.
+    /// Returns the contact with a part of another body within a distance, mm, at the pose `own` in the frame of that
+    /// body.
     fn contact(&self, own: &Pose, other: &Self, within: f64) -> Option<query::Contact> {
         let [here, there] = [own * self.pose, other.pose].map(|at| shapes::pose(&at, MILLIMETRES));
         query::contact(&here, &*self.shape, &there, &*other.shape, within).ok().flatten()
@@ -199,7 +199,7 @@ pub fn width([low, high]: [f64; 2]) -> f64 {
     high - low
 }
 
-/// Returns the lowest and the highest number; infinity and minus infinity without numbers.
+/// Returns the smallest and the largest number; infinity and minus infinity without numbers.
 pub fn span(values: impl Iterator<Item = f64>) -> [f64; 2] {
     values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
 }

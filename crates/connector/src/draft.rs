@@ -22,9 +22,9 @@ const BEYOND_BODY: f64 = 2.0 * MM;
 const BELOW_TIP: f64 = 0.5 * MM;
 /// Gap between the pads and the socket when the plug is seated, m.
 const BELOW_PADS: f64 = 1.0 * MM;
-/// Largest overlap of a key with its cylinder, m.
+/// Largest overlap of the key of a round plug with the cylinder, m.
 const KEY_ROOT: f64 = 0.45 * MM;
-/// Area below which a piece of a wall that a slot cuts is dropped, m2.
+/// Area below which a piece of a slotted wall is dropped, m2.
 const SLIVER: f64 = 1e-10;
 /// Thickness of the floor, m.
 const FLOOR: f64 = 2.0 * MM;
@@ -235,7 +235,7 @@ pub(crate) fn part(name: &str, solid: Solid) -> Part {
     Part { name: name.to_owned(), solid, friction: None }
 }
 
-/// Returns the opening and the socket: a floor, and walls around the opening.
+/// Returns the opening, m, and the socket: walls around the opening and a floor at the depth `floor`, m.
 fn housing(size: &Dimensions, floor: f64) -> ([[f64; 2]; 2], Vec<Part>) {
     let hole = size.round.then(|| Hole::new(size.plug.width, size.clearance));
     let mut opening = [size.plug.height, size.plug.width].map(|plug| {
@@ -272,7 +272,8 @@ fn housing(size: &Dimensions, floor: f64) -> ([[f64; 2]; 2], Vec<Part>) {
     (opening, parts)
 }
 
-/// Cuts a slot into the walls around a hole: from the hole to `reach` along +x, and to `half` on either side of y = 0.
+/// Cuts a slot into the walls around a hole: from the hole to `reach` along +x, and to `half` on either
+/// side of y = 0, m.
 fn slotted(walls: &[Part], [reach, half]: [f64; 2]) -> Vec<Part> {
     let cut = |wall: &Part| -> Vec<Part> {
         let Solid::Prism { axis, outline, span } = &wall.solid else { return vec![wall.clone()] };
@@ -315,7 +316,7 @@ fn area(outline: &[[f64; 2]]) -> f64 {
     twice.abs() / 2.0
 }
 
-/// Largest error of the diameter of a hole, as a share of the clearance, unless it needs more than the most flats.
+/// Largest error of the diameter of a hole, as a share of the clearance; the limit of [`FLATS`] has precedence.
 const DIAMETER_ERROR: f64 = 0.05;
 /// Smallest and largest number of flats, multiples of four, so that one faces each of -x, +x, -y and +y.
 const FLATS: [u32; 2] = [16, 96];
@@ -386,7 +387,8 @@ mod tests {
         }
     }
 
-    /// The slot takes from the walls what the key and its clearance need, and the key keeps them.
+    /// The slot removes from the walls the volume of the key with its clearance, and the task with a key passes all
+    /// checks.
     #[test]
     fn a_key_has_its_slot() {
         let (diameter, clearance, [wide, high]) = (8.0 * MM, 0.1 * MM, key("2x1").unwrap());
@@ -434,7 +436,7 @@ mod tests {
             let walls = hole.walls([half; 2], [-5.0 * MM, 0.0]);
             let volume: f64 = walls.iter().map(|part| geometry::volume(&part.solid)).sum();
             let expected = 5.0 * MM * (4.0 * half * half - PI * radius * radius);
-            // Its corners are cut where no flat's end meets them.
+            // A corner of the rectangle is cut off unless an edge between two walls meets it.
             assert!((volume / expected - 1.0).abs() < 0.02, "{volume} {expected}");
         }
     }

@@ -1,4 +1,5 @@
-//! Contacts of two fingertips with a grasped plug: faces, covered height, shoulder under the roofs.
+//! Grasp of a plug by two fingertips: each has a pad that presses a face of the plug, and above it a roof that rests on
+//! the shoulder of the plug.
 
 use super::body::{ConvexBody, clipped, extent, span, width};
 use input::units::MM;
@@ -6,22 +7,23 @@ use insertion::finger::{Pad, ROOF_GAP};
 use insertion::task::Part;
 use nalgebra::Point3;
 
-/// Tolerance of the position of a surface, m.
+/// Difference up to which positions of surfaces count as equal, m.
 pub const SEAM: f64 = 0.05 * MM;
 
-/// Extent of a pad in x, m.
+/// Extent of a pad in x, plug frame, m.
 pub const PAD_X: [f64; 2] = [-Pad::PUBLISHED.width / 2.0, Pad::PUBLISHED.width / 2.0];
 
-/// Contacts of pads with a plug, whose roofs rest at a given height; plug frame, m.
+/// Contacts of the two fingertips with a plug; plug frame, m.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PadContacts {
     /// Lower and upper edge of the pads.
     pub pad_z: [f64; 2],
-    /// Outermost y of the plug between the pads, at -y and at +y, each with the index of its part.
+    /// Outermost y of the plug within the height and the width of the pads, at -y and at +y, each with the index of its
+    /// part; `None` if no part is there.
     pub faces: Option<[(f64, usize); 2]>,
     /// Height over which each pad touches its face.
     pub cover: [f64; 2],
-    /// Highest z of the plug under or within each roof; `None` if nothing is there.
+    /// Highest z of the plug below each roof, or inside it; `None` if nothing there is above the middle of the pads.
     pub under_roof: [Option<f64>; 2],
 }
 
@@ -30,7 +32,8 @@ pub fn pad_z(shoulder: f64) -> [f64; 2] {
     [shoulder + ROOF_GAP - Pad::PUBLISHED.height, shoulder + ROOF_GAP]
 }
 
-/// Returns the contacts of pads whose roofs rest at `shoulder`, m, with the faces at `faces_y`, m, or the outermost.
+/// Returns the contacts of fingertips whose roofs rest at `shoulder`, m, and whose pads press the faces at `faces_y`,
+/// m, by default the outermost ones.
 pub fn pad_contacts(plug: &ConvexBody, shoulder: f64, faces_y: Option<[f64; 2]>) -> PadContacts {
     let pad_z = pad_z(shoulder);
     let mut pieces: Vec<Vec<Point3<f64>>> = vec![Vec::new(); plug.parts.len()];
@@ -49,7 +52,8 @@ pub fn pad_contacts(plug: &ConvexBody, shoulder: f64, faces_y: Option<[f64; 2]>)
     PadContacts { pad_z, faces, cover, under_roof }
 }
 
-/// Returns the outermost y of the pieces at -y and at +y, each with the index of its piece.
+/// Returns the outermost y at -y and at +y, m, of the pieces (the parts clipped to the pads), each with the index of
+/// its part.
 fn outermost(pieces: &[Vec<Point3<f64>>]) -> Option<[(f64, usize); 2]> {
     let reach = |sign: f64| {
         let each = pieces.iter().enumerate().filter(|(_, piece)| !piece.is_empty());
@@ -61,7 +65,7 @@ fn outermost(pieces: &[Vec<Point3<f64>>]) -> Option<[(f64, usize); 2]> {
     Some([reach(-1.0)?, reach(1.0)?])
 }
 
-/// Returns the height over which the plug touches the pad on a side.
+/// Returns the height over which the plug touches the pad on a side (0 at -y, 1 at +y) that presses y = `face`, m.
 fn cover(pieces: &[Vec<Point3<f64>>], face: f64, side: usize) -> f64 {
     let sign = [-1.0, 1.0][side];
     let reaching = pieces.iter().filter_map(|piece| {
@@ -71,7 +75,7 @@ fn cover(pieces: &[Vec<Point3<f64>>], face: f64, side: usize) -> f64 {
     width(span(reaching.flatten())).max(0.0)
 }
 
-/// Returns the z of the highest point of the plug under or within a roof, m, if it is above the middle of the pads.
+/// Returns the highest z of the plug below or inside the roof on a side, m, if it is above the middle of the pads.
 fn under_roof(plug: &ConvexBody, shoulder: f64, face: f64, side: usize) -> Option<f64> {
     // Narrowed by the tolerance, so that a part beside the roof does not count.
     let column = match side {
@@ -87,8 +91,9 @@ fn under_roof(plug: &ConvexBody, shoulder: f64, face: f64, side: usize) -> Optio
     plug.stiff().filter_map(|(_, part)| top(part)).max_by(f64::total_cmp)
 }
 
-/// Finds the default grasp of a plug, shoulder and faces in m: the highest shoulder on which both roofs can rest, and
-/// faces that the pads touch over at least `least_cover`, m. Flat faces are preferred to round ones such as cables.
+/// Finds the default grasp of a plug, as z of the shoulder and y of the faces, m: the highest shoulder on which both
+/// roofs can rest while each pad touches its face over at least `least_cover`, m. Flat faces are preferred to round
+/// ones such as cables.
 pub fn default_grasp(plug: &ConvexBody, least_cover: f64) -> Option<(f64, [f64; 2])> {
     let mut tops: Vec<f64> =
         plug.stiff().map(|(_, part)| extent(part.solid.corners(), 2)[1]).collect();
@@ -105,7 +110,8 @@ pub fn default_grasp(plug: &ConvexBody, least_cover: f64) -> Option<(f64, [f64; 
     [true, false].into_iter().find_map(|flat| tops.iter().find_map(|&top| grasp(top, flat)))
 }
 
-/// Returns whether a part has a face at this y, m, not just an edge or a corner.
+/// Returns whether the corners of a part at this y, m, are more than 1 mm apart in x; those of an upright cylinder are
+/// not.
 fn is_flat(part: &Part, y: f64) -> bool {
     let corners = part.solid.corners();
     width(extent(corners.iter().filter(|p| (p.y - y).abs() < SEAM), 0)) > 1.0 * MM

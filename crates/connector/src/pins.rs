@@ -11,7 +11,7 @@ const MAX_PINS: u32 = 100;
 /// Grid of the pins of a header; lengths in m.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pins {
-    /// Number of pins in y (between the jaws) and in x.
+    /// Number of pins in y (rows, between the jaws) and in x (columns).
     pub count: [u32; 2],
     /// Distance from pin to pin.
     pub pitch: f64,
@@ -22,7 +22,7 @@ pub struct Pins {
 }
 
 impl Pins {
-    /// Parses the number of pins in y and in x, NxM.
+    /// Parses the number of pins in y and in x, ROWSxCOLUMNS.
     ///
     /// # Errors
     /// If the text has another format, a number is 0, or their product is above 100.
@@ -55,7 +55,7 @@ impl Pins {
         Size { width, height, length: 20.0 * MM }
     }
 
-    /// Returns the centres of the pins in y or in x.
+    /// Returns the coordinates of the pin centres, m, in y for `axis` 0 and in x for 1, as in `count`.
     fn centres(&self, axis: usize) -> impl Iterator<Item = f64> {
         let (count, pitch) = (self.count[axis], self.pitch);
         (0..count).map(move |i| (f64::from(i) - f64::from(count - 1) / 2.0) * pitch)
@@ -71,7 +71,8 @@ impl Pins {
         (1..).zip(places).map(pin).collect()
     }
 
-    /// Returns the parts of a plate with these extents in x, y and z and one hole per pin.
+    /// Returns the parts of a plate with these extents in x, y and z, m, and one square hole per pin; `clearance`
+    /// is the width of a hole minus that of a pin, m.
     pub fn plate(&self, clearance: f64, [x, y]: [[f64; 2]; 2], z: [f64; 2]) -> Vec<Part> {
         let half = (self.side + clearance) / 2.0;
         let between = |axis: usize, [low, high]: [f64; 2]| -> Vec<[f64; 2]> {
@@ -79,6 +80,7 @@ impl Pins {
             let begins = [low].into_iter().chain(self.centres(axis).map(|at| at + half));
             begins.zip(ends).map(|(begin, end)| [begin, end]).collect()
         };
+        // Bars lie between the columns of holes, webs between the holes of a column.
         let bars = between(1, x).into_iter().map(|x| [x, y]);
         let webs = self
             .centres(1)

@@ -1,10 +1,10 @@
-//! Grip point, search moves and success of a plug and a socket whose shapes are known.
+//! Grasp point, strategy and success criterion of a task, derived from the shapes of plug and socket.
 //!
-//! The strategy is the paper's: down beside the opening with the tip's lower edge in its middle,
-//! across it until both its sides were met, along -y to the wall, and in. This module derives the length
-//! of each move. The over-strokes and the tilt were chosen by trying plugs of 3 to 35 mm:
-//! see `docs/guide/tasks.md`. A round tip comes down with a point, which must be near the wall before it
-//! is pressed, or the plug tips over: it has its own `Moves`.
+//! The strategy is the paper's: the tilted plug is set down beside the opening, its lower edge over the middle of the
+//! opening in y; it moves along x to the sides of the opening, along -y to the wall, and is pushed in. This module
+//! derives the length of each move. The over-strokes and the tilt were chosen by trying plugs of 3 to 35 mm: see
+//! `docs/guide/tasks.md`. A round tip touches down with a point, which must be near the wall before it is pressed, or
+//! the plug tips over: it has its own `Moves`.
 
 use super::body::{ConvexBody, extent, width};
 use super::hold::pad_contacts;
@@ -24,9 +24,9 @@ const RISE: f64 = 0.35 * MM;
 const TILT_DEG: [f64; 2] = [5.0, 10.0];
 /// Clear height above the socket at the start and after the approach, m.
 const AIR: [f64; 2] = [5.0 * MM, 1.0 * MM];
-/// Stroke in which the touch must find the socket, m.
+/// Longest stroke of the touch, m.
 const TOUCH: f64 = 3.0 * MM;
-/// Overlap of the tip with the rim at -x when it is set down, m; of a small tip a quarter.
+/// Overlap of the tip with the rim at -x when it is set down, m; at most a quarter of the tip.
 const BESIDE: f64 = 1.0 * MM;
 /// Over-stroke of the moves along x after the tip has met a wall, m: there and back.
 const ACROSS: [f64; 2] = [0.8 * MM, 0.45 * MM];
@@ -36,15 +36,15 @@ const ROUND_ACROSS: f64 = 0.5 * MM;
 const ROUND_AHEAD: f64 = 0.75;
 /// Amplitude of the sweep of an upright plug over its seat, m: the margin that a strategy should have.
 const SWEEP: f64 = 1.0 * MM;
-/// Command beyond the touch during the sweep, m.
+/// Commanded depth below the first contact during the sweep, m.
 const SWEPT_PRELOAD: f64 = 0.15 * MM;
-/// Command of the push beyond the seat, m, and its speed, m/s.
+/// Commanded depth of the push below the seat, m, and its speed, m/s.
 const PUSH: [f64; 2] = [4.0 * MM, 100.0 * MM];
-/// Tilt that counts as upright in addition to that which the play allows, degrees.
+/// Tilt that counts as upright beyond that which the play allows, degrees.
 const UPRIGHT_DEG: f64 = 2.0;
 /// Smallest limit of the tilt of an upright plug, degrees.
 const LEAST_UPRIGHT_DEG: f64 = 3.0;
-/// Allowance for the success depth in addition to that of a tilt: m, and a share of the full depth.
+/// Distance of the success depth above the seat, besides that for a tilt: m, and a share of the full depth.
 const MISSING: (f64, f64) = (0.2 * MM, 0.02);
 /// Share of the full depth at which the play is measured.
 const WITHIN: f64 = 0.9;
@@ -225,13 +225,15 @@ struct Moves {
     x: f64,
     /// y of the tip's lowest point at the start.
     edge_y: f64,
-    /// Touch beyond first contact.
+    /// Commanded depth below the first contact.
     preload: f64,
     /// Moves along x: back, to the front, and during the move to the side.
     across: [f64; 3],
+    /// Descent during the move to the front.
     down: f64,
+    /// Length of the move along -y.
     side: f64,
-    /// Command of the push beyond the seat, and its speed, m/s.
+    /// Commanded depth of the push below the seat, and its speed, m/s.
     push: [f64; 2],
 }
 

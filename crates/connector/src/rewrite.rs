@@ -1,13 +1,14 @@
-//! Replacement of the strategy in the text of a task file: comments are kept, old values are noted beside the new ones.
+//! Replacement of the strategy in the text of a task file: comments are kept, and old values become comments.
 
 use super::write;
 use insertion::task::Strategy;
 use toml_edit::{Array, ArrayOfTables, DocumentMut, Item, Table, TomlError, Value};
 
-/// Mark with which editors on Windows begin a file.
+/// Byte order mark, with which some editors on Windows begin a file.
 const BYTE_ORDER_MARK: char = '\u{feff}';
 
-/// Returns the text of a task file with another strategy; line endings and byte order mark are kept.
+/// Returns the text of a task file with its strategy replaced by `after`; line endings and byte order mark are kept. A
+/// rule for the start (`start`) becomes a comment, since `start_mm` then gives the start.
 ///
 /// # Errors
 /// If the text is not TOML.
@@ -47,7 +48,7 @@ fn with_line_endings_of(other: &str, text: String) -> String {
     if marked { format!("{BYTE_ORDER_MARK}{text}") } else { text }
 }
 
-/// Returns whether two strategies have the same moves apart from their numbers.
+/// Returns whether the phases of two strategies agree in number, names, stages and motions.
 fn same_moves(old: &ArrayOfTables, new: &ArrayOfTables) -> bool {
     let kinds = |phases: &ArrayOfTables| -> Vec<_> {
         let word = |phase: &Table, key| phase.get(key).and_then(Item::as_str).map(str::to_owned);
@@ -56,7 +57,7 @@ fn same_moves(old: &ArrayOfTables, new: &ArrayOfTables) -> bool {
     kinds(old) == kinds(new)
 }
 
-/// Updates the values of a table that differ, and notes the old ones beside them.
+/// Updates the values of a table that differ, each with its old value in a comment behind it.
 fn update(old: &mut Table, new: &Table) {
     for (key, to) in new {
         let Some(to) = to.as_value() else { continue };
@@ -106,13 +107,13 @@ fn comment_above(table: &mut Table, key: &str, comment: &str) {
     }
 }
 
-/// Returns whether two values are equal for a task: numbers within the resolution of written lengths.
+/// Returns whether two values are equal for a task, numbers within the resolution of task files.
 fn same(a: &Value, b: &Value) -> bool {
     let number = |value: &Value| value.as_float().or(value.as_integer().map(|whole| whole as f64));
     let list =
         |a: &Array, b: &Array| a.len() == b.len() && a.iter().zip(b).all(|(a, b)| same(a, b));
     match (number(a), number(b), a.as_array(), b.as_array()) {
-        // 0.1 um.
+        // In the unit of the key; 0.1 um for a length in mm.
         (Some(a), Some(b), ..) => (a - b).abs() < 1e-4,
         (.., Some(a), Some(b)) => list(a, b),
         _ => a.as_str().is_some() && a.as_str() == b.as_str(),
@@ -133,7 +134,7 @@ mod tests {
     use input::shipped::TASKS;
     use insertion::task::Task;
 
-    /// Writes a family's strategy into a task and asserts that it is read again; returns text and task.
+    /// Writes a family's strategy into a task file and asserts that it reads back; returns text and task.
     fn arrives(text: &str, family: Family) -> (String, Task) {
         let after = family.strategy_for(&Task::parse(text, "own").unwrap()).unwrap();
         let written = with_strategy(text, &after).unwrap();

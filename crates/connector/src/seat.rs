@@ -1,4 +1,5 @@
-//! Seat of the upright plug in its socket, and waypoints of the commanded search without compliance.
+//! Seat of the upright plug in its socket (its deepest pose without an overlap), and waypoints of the commanded path,
+//! as if nothing yielded.
 
 use super::body::{ConvexBody, clipped, extent};
 use contact::scene::Pose;
@@ -6,11 +7,11 @@ use input::units::MM;
 use insertion::task::{Ending, Mated, Part, Stage, Task};
 use nalgebra::{Point3, UnitQuaternion, Vector3};
 
-/// Overlap that is ignored, m: that of rounding to 0.01 mm.
+/// Overlap that is ignored, m: faces that touch can overlap after lengths are rounded to 0.01 mm.
 const TOLERANCE: f64 = 0.02 * MM;
 /// Step of the depth on the way down, m.
 const STEP: f64 = 0.25 * MM;
-/// Resolution of the deepest place, m.
+/// Resolution of the depth of the seat, m.
 const FINE: f64 = 0.005 * MM;
 /// Overlap of bodies that only touch, m.
 const TOUCHING: f64 = 1e-3 * MM;
@@ -21,18 +22,19 @@ const GRID: i32 = 8;
 /// Refinements of that grid about its best place.
 const REFINEMENTS: i32 = 4;
 
-/// Returns the clearance in x and in y of the upright plug where it seats, m.
+/// Returns the total play in x and in y of the upright plug, m, at the success depth or at the seat if that is higher.
 pub fn clearance(task: &Task) -> [f64; 2] {
     let bodies = TaskBodies::new(task);
     let seat = bodies.deepest();
     [0, 1].map(|axis| bodies.play(task.success.depth.min(seat.depth), seat.at, axis))
 }
 
+/// Deepest pose of the upright plug.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Seat {
     /// Depth of the tip below the socket's top, m; 0 if the plug does not enter.
     pub depth: f64,
-    /// x and y of the plug's axis there, m.
+    /// x and y of the plug's axis at this depth, m.
     pub at: [f64; 2],
     /// Indices of the plug part and the socket part that meet; `None` if the plug is mated or falls through.
     pub stopped_by: Option<[usize; 2]>,
@@ -54,7 +56,7 @@ impl<'a> TaskBodies<'a> {
         TaskBodies { task, plug, socket }
     }
 
-    /// Returns the deepest pose of the upright plug on the way down, or the mated pose.
+    /// Returns the deepest pose that the upright plug reaches from above, or the mated pose if it is known.
     pub fn deepest(&self) -> Seat {
         if let Some(Mated { tip: [x, y, z], .. }) = self.task.success.mated {
             return Seat { depth: -z, at: [x, y], stopped_by: None };
@@ -84,7 +86,7 @@ impl<'a> TaskBodies<'a> {
         self.free_distances(depth, middle, axis).iter().sum()
     }
 
-    /// Returns the free distances in both directions along an axis, m.
+    /// Returns the free distances in both directions along an axis, m: those up to a larger overlap than that at `at`.
     fn free_distances(&self, depth: f64, at: [f64; 2], axis: usize) -> [f64; 2] {
         let least = self.overlap(depth, at).0.max(TOUCHING);
         [-1.0, 1.0].map(|sign| {
@@ -101,7 +103,8 @@ impl<'a> TaskBodies<'a> {
         })
     }
 
-    /// Finds the deepest free place between a free depth and a blocked one by bisection.
+    /// Finds the deepest free place between a free depth and a blocked one by bisection; the ignored overlap is
+    /// subtracted from its depth.
     fn bisected(&self, mut free: f64, mut blocked: f64, mut at: [f64; 2]) -> Seat {
         let mut stopped_by = None;
         while blocked - free > FINE {
@@ -147,6 +150,7 @@ impl<'a> TaskBodies<'a> {
         Err(best.1)
     }
 
+    /// Returns the deepest overlap of the upright plug, m, and the indices of its plug part and its socket part.
     fn overlap(&self, depth: f64, [x, y]: [f64; 2]) -> (f64, [usize; 2]) {
         let pose = Pose::translation(x, y, -depth);
         let found = self.plug.overlap(&pose, &self.socket);
@@ -154,7 +158,7 @@ impl<'a> TaskBodies<'a> {
     }
 }
 
-/// Returns the extent in x and y of the part of the plug that is in the socket at a depth, m.
+/// Returns the extent in x and y of the section of the plug that is below the socket's top at a depth, m.
 pub fn section(plug: &ConvexBody, depth: f64) -> [[f64; 2]; 2] {
     let below = |part: &Part| clipped(&part.solid.corners(), 2, [f64::NEG_INFINITY, depth]);
     let below: Vec<_> = plug.parts.iter().flat_map(below).collect();

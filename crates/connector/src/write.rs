@@ -10,13 +10,14 @@ use insertion::task::{
 };
 use nalgebra::{Point3, Vector3};
 
-/// Comments and layout of a task file.
+/// Comments of a task file, and the file of its parts.
 #[derive(Debug, Clone, Default)]
 pub struct Notes {
+    /// Lines of the comment at the top.
     pub head: Vec<String>,
-    /// Separate file of the parts, if there is one.
+    /// Separate file of the parts; `None` if the task file contains them.
     pub parts: Option<PartsFile>,
-    /// Whether overlapping parts, such as contact springs, were left out.
+    /// Whether parts that overlap, such as contact springs, were left out.
     pub left_out: bool,
 }
 
@@ -194,7 +195,7 @@ fn mm(length: f64) -> String {
     round(length / MM, 1e4)
 }
 
-/// Returns a TOML float, rounded to `1 / parts`.
+/// Returns a TOML float, rounded to a multiple of `1 / parts`.
 fn round(value: f64, parts: f64) -> String {
     // Adding zero avoids "-0.0".
     format!("{:?}", (value * parts).round() / parts + 0.0)

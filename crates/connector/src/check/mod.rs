@@ -39,6 +39,7 @@ impl From<&InputError> for Problem {
             let remedy = "see docs/guide/tasks.md, or `optimize task show usb`";
             return Problem::new(key, problem, remedy);
         };
+        // The text of an error states the fault and then, after a semicolon, what is accepted.
         let whole = (problem, "see docs/guide/tasks.md");
         let (problem, remedy) = problem.split_once("; ").unwrap_or(whole);
         Problem::new(key, problem, remedy)

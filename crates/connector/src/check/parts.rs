@@ -11,11 +11,11 @@ use nalgebra::Vector3;
 
 /// Largest overlap of joined parts, m.
 const OVERLAP: f64 = 0.5 * MM;
-/// Smallest thickness of a part with a mass and a contact surface, m.
+/// Thickness below which a part has no useful mass or contact surface, m.
 const THIN: f64 = 0.01 * MM;
 /// Lightest and heaviest material, kg/m3: foam, tungsten.
 const DENSITIES: [f64; 2] = [100.0, 20e3];
-/// Densities of plastic and steel, kg/m3.
+/// Densities of plastic and steel for advice, kg/m3.
 const USUAL: [f64; 2] = [1000.0, 7850.0];
 
 pub(super) fn problems(case: &TaskBodies) -> Vec<Problem> {

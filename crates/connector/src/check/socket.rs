@@ -13,8 +13,9 @@ const BELOW: f64 = 0.1 * MM;
 const TOLERANCE: f64 = 0.15 * MM;
 /// Number of positions along a side at which its wall is searched for, because walls can be slanted or round.
 const POSITIONS: i32 = 41;
-/// Distance from the stated edge up to which a wall is searched for, and the step of the search, m.
+/// Distance from the stated edge up to which a wall is searched for, m.
 const REACH: f64 = 5.0 * MM;
+/// Step of this search, m.
 const STEP: f64 = 0.0025 * MM;
 /// Compression of the contacts, by which the success depth may exceed the depth of the seat, m.
 const COMPRESSION: f64 = 0.02 * MM;

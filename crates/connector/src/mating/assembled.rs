@@ -1,4 +1,4 @@
-//! Direction in which the plug of an assembly can be withdrawn.
+//! Mate of the plug and the socket of an assembly, which are in their mated pose.
 
 use super::frame::{Part, Parts, rotations_to_z, turned};
 use super::refine::{Pose, settled_areas};
@@ -6,9 +6,9 @@ use super::search::{EFFORTS, Scene};
 use super::{MAX_PLAYS, Mate, MatingError, precise};
 use crate::mesh::Triangle;
 
-/// Finds the direction in which the plug of an assembly can be withdrawn; both parts in the frame of the assembly, m.
-/// Of several directions, it is the one with the largest engagement (facing area minus penalty for overlap); if two are
-/// equal, the one in which the plug protrudes further.
+/// Returns the mate of a plug and a socket that are mated, both in the frame of the assembly, m. Its direction of
+/// withdrawal is the one with the largest engagement (facing area minus penalty for overlap), of two equal ones that in
+/// which the plug protrudes.
 ///
 /// # Errors
 /// If a part is empty, or the plug is blocked or loose in every direction.
@@ -21,7 +21,7 @@ pub fn assembled(plug: &[Triangle], socket: &[Triangle]) -> Result<Mate, MatingE
     let parts = Parts { plug: Part { own, triangles: turned(plug, &own) }, socket };
     let scene = Scene::new(&parts, EFFORTS[0]);
     let poses = (0..rotations_to_z().len()).map(|out| {
-        // The plug is rotated like the socket: every fourth rotation of a plug is a direction of a socket.
+        // The plug is rotated like the socket: `rotations_to_z` has every fourth rotation of `turns`.
         let pose = Pose { out, turn: 4 * out, ..Pose::default() };
         settled_areas(&scene, pose, MAX_PLAYS[0])
     });

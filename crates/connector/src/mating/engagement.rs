@@ -1,27 +1,30 @@
-//! Side walls of the plug that face walls of the socket.
+//! Engagement of plug and socket: area of the plug's side walls that face walls of the socket.
 
 use super::map::{HeightMap, NOWHERE};
 
-/// Overlapping volume that cancels one unit of facing area, m3/m2.
+/// Overlapping volume that outweighs one unit of facing area, m3/m2: a depth of 0.125 mm.
 const OVERLAP_PER_AREA: f64 = 0.125e-3;
 
-/// Area of the plug's walls that look along +x, -x, +y and -y and face a wall of the socket, m2.
+/// Areas of the plug's walls with outward normals along +x, -x, +y and -y that face a wall of the socket, m2.
 pub type WallAreas = [f64; 4];
 
-/// Returns the geometric mean over both lateral axes of the smaller area of two opposite sides, m2.
+/// Returns the geometric mean of the facing areas along x and y, each that of the weaker of two opposite sides, m2.
 pub fn score(walls: &WallAreas) -> f64 {
     (walls[0].min(walls[1]) * walls[2].min(walls[3])).sqrt()
 }
 
-/// Directions of the four sides.
+/// Outward normals of the four sides: side / 2 is the axis (0 x, 1 y), and even sides are at its positive end.
 pub const SIDES: [[i32; 2]; 4] = [[1, 0], [-1, 0], [0, 1], [0, -1]];
 
 /// Vertical strip of a side wall of the plug, one cell wide.
 struct Strip {
-    /// Cell whose side it is.
+    /// Cell at whose side the wall is.
     cell: [i32; 2],
+    /// Index of the side in [`SIDES`].
     side: usize,
+    /// Height of the lower envelope in the cell, m.
     low: f32,
+    /// Height of the lower envelope in the next cell outward, m.
     high: f32,
 }
 
@@ -32,7 +35,7 @@ pub struct PlugWalls {
 }
 
 impl PlugWalls {
-    /// Finds the side walls of a height map that are steeper than 45 degrees.
+    /// Creates the side walls from the lower envelope of a plug: its slopes steeper than 45 degrees.
     pub fn new(plug: &HeightMap) -> Self {
         let mut strips = Vec::new();
         for [x, y] in plug.cells() {
@@ -41,7 +44,7 @@ impl PlugWalls {
                 continue;
             }
             for (side, [dx, dy]) in SIDES.into_iter().enumerate() {
-                // Between the cell's height and its neighbour's the plug has a wall.
+                // The wall extends from the cell's height to its neighbour's.
                 let high = plug.at(x + dx, y + dy);
                 if high - low > plug.step[side / 2] as f32 {
                     strips.push(Strip { cell: [x, y], side, low, high });
@@ -51,8 +54,8 @@ impl PlugWalls {
         PlugWalls { strips, step: plug.step }
     }
 
-    /// Returns the [`score`] of the facing walls, and the overlapping volume converted to an area, m2; `plug` is the
-    /// lower envelope of the plug without the tolerance.
+    /// Returns the [`score`] of the facing walls and the overlapping volume as an equivalent area, m2; shift and height
+    /// as for [`Self::facing`]. `plug` is the lower envelope of the plug, eroded by the tolerated interference.
     pub fn areas(
         &self,
         socket: &SocketWalls,
@@ -67,15 +70,16 @@ impl PlugWalls {
         [walls, volume / OVERLAP_PER_AREA]
     }
 
-    /// Returns the area of the walls that face a wall of the socket; the plug is shifted by whole cells and at height
-    /// `z`.
+    /// Returns the areas of the walls that face a wall of the socket if the plug is shifted by `shift` cells and raised
+    /// to `z`, m.
     pub fn facing(&self, socket: &SocketWalls, shift: [i32; 2], z: f32) -> WallAreas {
         let mut sums = [0.0; 4];
         for strip in &self.strips {
             let [dx, dy] = SIDES[strip.side];
             let [x, y] = [strip.cell[0] + shift[0], strip.cell[1] + shift[1]];
             let (low, high) = (strip.low + z, strip.high + z);
-            // The socket penetrates the wall: a spring or a latch, not a guide.
+            // Where the socket penetrates the wall deeper than tolerated, it is a spring or a latch and does not guide
+            // the plug.
             let into = socket.tolerance_cells[strip.side / 2] + 1;
             if socket.map.at(x - into * dx, y - into * dy) > low + socket.tolerance {
                 continue;
@@ -88,11 +92,11 @@ impl PlugWalls {
     }
 }
 
-/// Walls of a socket as seen from the sides of a plug.
+/// Upper envelope of a socket, prepared for the search for walls that face those of a plug.
 pub struct SocketWalls<'a> {
     /// Upper envelope of the socket.
     map: &'a HeightMap,
-    /// Largest heights within reach of each side.
+    /// For each side of a plug, largest height of the socket within reach of a wall in each cell, m.
     highest: [HeightMap; 4],
     /// Depth of the tolerated interference, cells along x and y.
     tolerance_cells: [i32; 2],
@@ -101,7 +105,8 @@ pub struct SocketWalls<'a> {
 }
 
 impl<'a> SocketWalls<'a> {
-    /// Creates the walls within `reach` of the plug that penetrate it by at most `tolerance`, m.
+    /// Prepares the upper envelope `map`: walls count from `tolerance` behind a wall of the plug to `reach` in front of
+    /// it, m.
     pub fn new(map: &'a HeightMap, [reach, tolerance]: [f64; 2]) -> Self {
         let cells = |length: f64| map.step.map(|step| (length / step).ceil() as i32);
         let (reach, tolerance_cells) = (cells(reach), cells(tolerance));
@@ -117,13 +122,14 @@ impl<'a> SocketWalls<'a> {
     }
 }
 
-/// Returns the cells in which the maps of socket and plug, the latter shifted and at height `z`, overlap.
+/// Returns the cells of the plug in which it overlaps the socket, if it is shifted by `shift` cells and raised to `z`,
+/// m; `maps` are the upper envelope of the socket and the lower one of the plug.
 pub fn overlap(maps: [&HeightMap; 2], shift: [i32; 2], z: f32) -> Vec<[i32; 2]> {
     rests(maps, shift).filter(|(_, rest)| *rest > z).map(|(cell, _)| cell).collect()
 }
 
-/// Returns each cell of the plug, whose map is the second and shifted, with the height at which it would rest on the
-/// socket.
+/// Returns each cell of the plug with the height at which this cell would rest on the socket, m; arguments as for
+/// [`overlap`].
 fn rests(maps: [&HeightMap; 2], shift: [i32; 2]) -> impl Iterator<Item = ([i32; 2], f32)> {
     let [socket, plug] = maps;
     plug.cells().map(move |[x, y]| ([x, y], socket.at(x + shift[0], y + shift[1]) - plug.at(x, y)))

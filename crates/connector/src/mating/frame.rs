@@ -1,4 +1,4 @@
-//! Principal axes of a part, and the rotations between the axes of two parts.
+//! Axes of a part, parallel to its walls, and the rotations between the axes of two parts.
 
 use super::MatingError;
 use crate::mesh::Triangle;
@@ -6,16 +6,16 @@ use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 
 /// Cosine of the largest angle between parallel normals: half a degree.
 const PARALLEL: f64 = 0.999_96;
-/// Largest number of directions that are tried as axes.
+/// Largest number of directions of normals that are tried as axes.
 const MOST_DIRECTIONS: usize = 12;
-/// Smallest share of the best axes' area at which the axes of the file are kept: round parts have many good axes.
+/// Share of the best axes' area at and above which the axes of the file are kept: a round part has many equal axes.
 const KEPT: f64 = 0.6;
 
-/// Triangles of a part in its own axes, to which its walls are parallel.
+/// Part of a connector (plug or socket) in its own axes, to which its walls are parallel.
 pub struct Part {
-    /// Rotation from the axes of the file to its own.
+    /// Rotation from the axes of the file to the part's own axes.
     pub own: Rotation3<f64>,
-    /// Triangles in its own axes, m.
+    /// Triangles in the own axes, m.
     pub triangles: Vec<Triangle>,
 }
 
@@ -28,7 +28,7 @@ pub struct Parts {
 }
 
 impl Part {
-    /// Rotates a part to its own axes.
+    /// Rotates the triangles of a file, m, to their own axes; `name` names the part in errors.
     pub fn new(triangles: &[Triangle], name: &'static str) -> Result<Self, MatingError> {
         let directions = directions(triangles);
         let own = axes(&directions).ok_or(MatingError::Empty(name))?;
@@ -41,7 +41,7 @@ pub fn turned(triangles: &[Triangle], turn: &Rotation3<f64>) -> Vec<Triangle> {
     triangles.iter().map(|corners| corners.map(|p| turn * p)).collect()
 }
 
-/// Returns the 24 rotations that map axes to axes.
+/// Returns the 24 rotations that map axes to axes; each four in a row map the same axis to z.
 pub fn turns() -> Vec<Rotation3<f64>> {
     let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
     let signed = axes.iter().flat_map(|axis| [*axis, -axis]).collect::<Vec<_>>();
@@ -60,7 +60,8 @@ fn upright(z: Vector3<f64>, x: Vector3<f64>) -> Rotation3<f64> {
     Rotation3::from_matrix_unchecked(Matrix3::from_rows(&rows))
 }
 
-/// Returns the directions of the normals, of either sense, with their areas, the largest first.
+/// Returns the directions of the normals, with opposite ones joined, each with the area of its triangles, m2, the
+/// largest first.
 fn directions(triangles: &[Triangle]) -> Vec<(Vector3<f64>, f64)> {
     let normal = |[a, b, c]: &Triangle| {
         let normal = (b - a).cross(&(c - a));
@@ -82,7 +83,8 @@ fn directions(triangles: &[Triangle]) -> Vec<(Vector3<f64>, f64)> {
     found
 }
 
-/// Returns the axes to which most of the area is perpendicular; the axes of the file if they are about as good.
+/// Returns the rotation to the axes along which the normals of the largest area point; the identity if the axes of the
+/// file have at least the share [`KEPT`] of that area.
 fn axes(directions: &[(Vector3<f64>, f64)]) -> Option<Rotation3<f64>> {
     let area = |turn: &Rotation3<f64>| -> f64 {
         let square = |normal: &Vector3<f64>| (turn * normal).amax() > PARALLEL;

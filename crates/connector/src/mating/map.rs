@@ -22,10 +22,12 @@ impl Envelope {
         if self == Envelope::Upper { -NOWHERE } else { NOWHERE }
     }
 
+    /// Returns the outermost of two heights: the higher one of an upper envelope, the lower one of a lower envelope.
     fn outer(self, a: f32, b: f32) -> f32 {
         if (self == Envelope::Upper) == (a > b) { a } else { b }
     }
 
+    /// Returns the innermost of two heights.
     fn inner(self, a: f32, b: f32) -> f32 {
         if (self == Envelope::Upper) == (a > b) { b } else { a }
     }
@@ -55,7 +57,7 @@ pub fn bounds(triangles: &[Triangle]) -> [[f64; 2]; 3] {
 }
 
 impl HeightMap {
-    /// Creates the map of triangles within a window.
+    /// Creates the map of triangles with cells of `step`, m, within a window or else of all triangles.
     pub fn new(
         triangles: &[Triangle],
         envelope: Envelope,
@@ -243,7 +245,7 @@ impl HeightMap {
     }
 }
 
-/// Returns the height at which a plug shifted by whole cells rests; stops once it reaches `enough`.
+/// Returns the height at which a plug shifted by whole cells rests on a socket, m; stops once it reaches `enough`.
 pub fn rest(socket: &HeightMap, plug: &HeightMap, shift: [i32; 2], enough: f32) -> f32 {
     let (snx, pnx) = (socket.count[0], plug.count[0]);
     let span = |axis: usize| {

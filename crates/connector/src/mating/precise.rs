@@ -1,4 +1,4 @@
-//! Seat and play of a pose, measured on fine maps.
+//! Resting height and lateral play of a seated plug, measured on fine maps.
 
 use super::Mate;
 use super::cells::CellSet;
@@ -10,29 +10,32 @@ use crate::mesh::Triangle;
 use input::units::MM;
 use nalgebra::{Isometry3, Translation3, Unit, UnitQuaternion, Vector3};
 
-/// Cell along the direction in which play is measured, m, and largest number of cells of a map.
+/// Side of a cell along the axis on which play is measured, m.
 const CELL: f64 = 0.005 * MM;
+/// Largest number of cells of a map.
 const MOST_CELLS: f64 = 1.5e6;
-/// Height above the seat at which play is measured, m, so that the stop does not limit it.
+/// Height above the seat at which play is measured, m, so that the surface on which the plug rests does not limit it.
 const LIFT: f64 = 0.1 * MM;
-/// Width of the margin about interfering cells that is ignored as well, m.
+/// Width of the margin around interfering cells that is left out with them, m.
 const MARGIN: f64 = 0.1 * MM;
-/// Number of times that the plug is centred in x and y.
+/// Number of times that the plug is centred, in x and then in y.
 const ROUNDS: usize = 2;
 
-/// Measurement of play and resting height on the parts without their interfering cells.
+/// Measurement of play and resting height; cells in which the parts interfere are left out.
 struct PlayMeasurement<'a> {
     socket: &'a [Triangle],
     plug: &'a [Triangle],
     window: Window,
-    /// Cells of the plug, of side `step`, that interfere, with a margin about them.
+    /// Cells of the plug in which the parts interfere, with a margin around them.
     interfering: CellSet,
+    /// Side of these cells, m.
     step: f64,
+    /// Shift of the plug in x and y, m.
     shift: [f64; 2],
 }
 
 impl PlayMeasurement<'_> {
-    /// Returns the maps of socket and plug, of cells that are fine along an axis.
+    /// Returns the maps of socket and plug, with cells of [`CELL`] along an axis and larger ones across it.
     fn maps(&self, axis: usize) -> [HeightMap; 2] {
         let area: f64 = self.window.iter().map(|[low, high]| high - low).product();
         let mut step = [(area / MOST_CELLS / CELL).max(2.0 * CELL); 2];
@@ -60,7 +63,8 @@ impl PlayMeasurement<'_> {
         }
     }
 
-    /// Centres the plug along an axis and returns its play, m.
+    /// Centres the plug along a lateral axis at a height, m, and returns its total play, m; it is measured up to
+    /// `max_play` to either side.
     fn centre(&mut self, axis: usize, height: f64, max_play: f64) -> f64 {
         let [upper, lower] = self.maps(axis);
         let free = |offset: i32| {
@@ -69,7 +73,7 @@ impl PlayMeasurement<'_> {
             rest(&upper, &lower, shift, height as f32) < height as f32
         };
         let most = (max_play / CELL) as i32;
-        // The pose is that of coarser maps and may overlap by a cell or two.
+        // The pose comes from coarser maps and may overlap by a cell or two of those.
         let Some(first) = (0..=most / 8).flat_map(|k| [k, -k]).find(|k| free(*k)) else {
             return 0.0;
         };
@@ -86,7 +90,7 @@ impl PlayMeasurement<'_> {
     }
 }
 
-/// Measures seat and play of a pose.
+/// Measures resting height and play at a pose and returns the mate in the frames of the files.
 pub fn mate(parts: &Parts, scene: &Scene, pose: &Pose, max_play: f64) -> Mate {
     let fine = Fine::new(scene, pose, max_play);
     let margin = (MARGIN / fine.step).ceil() as i32;

@@ -1,4 +1,4 @@
-//! Refinement of rough seats: shift, height, interference and engagement.
+//! Refinement of coarse seats: shift, height, interference and engagement.
 
 use super::cells::CellSet;
 use super::engagement::{PlugWalls, SIDES, SocketWalls, overlap, score};
@@ -14,17 +14,19 @@ pub const REACH: f64 = 0.6;
 /// Tried interferences, m.
 const OVERLAPS: [f64; 10] =
     [0.0, 0.02e-3, 0.05e-3, 0.1e-3, 0.15e-3, 0.2e-3, 0.3e-3, 0.5e-3, 0.8e-3, 1.25e-3];
-/// Interference of faces that touch, m.
+/// Interference up to which faces count as touching, m.
 pub const TOLERANCE: f64 = 0.02 * MM;
-/// Largest difference between resting heights of one seat, m.
+/// Largest difference between resting heights that count as equal, m.
 const LEVEL: f32 = 0.02e-3;
-/// Smallest cell, m, and largest number of cells of a map.
+/// Smallest cell of a map, m.
 const LEAST_CELL: f64 = 0.01 * MM;
+/// Largest number of cells of a map.
 const MOST_CELLS: f64 = 1e6;
 /// Largest number of moves of the search window.
 const MOST_MOVES: usize = 4;
-/// Largest number of refined seats, and their smallest facing area as a share of the best one.
+/// Largest number of refined seats.
 const MOST: usize = 24;
+/// Smallest facing area of a refined seat, as a share of the largest one.
 const SHARE: f64 = 0.4;
 
 /// Refined pose of the plug.
@@ -179,12 +181,16 @@ pub struct Fine {
     pub step: f64,
     upper: HeightMap,
     lower: HeightMap,
+    /// Lower envelope of the plug, eroded by [`TOLERANCE`].
     tight: HeightMap,
     sides: PlugWalls,
+    /// Lowest and highest z of socket and plug, m.
     heights: [[f64; 2]; 2],
     /// Rectangle of the socket that the plug can touch, m.
     pub window: Window,
+    /// Radius of the search for the lowest shift, cells.
     radius: i32,
+    /// Limit of the play, m.
     max_play: f64,
 }
 
@@ -253,7 +259,8 @@ impl Fine {
         Pose { depth, ..pose }
     }
 
-    /// Returns the lowest shift near a shift that has the most facing walls, and its height.
+    /// Returns the shift near `about` with the lowest resting height and, among equal ones, the largest facing area;
+    /// and that height, m.
     fn settled(
         &self,
         maps: [&HeightMap; 2],

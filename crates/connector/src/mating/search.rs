@@ -139,8 +139,8 @@ fn rests([s, s_inner]: &Coarse, [p, p_inner]: &Coarse, passed: f32) -> HeightMap
     map
 }
 
-/// Finds the seats with at most `max_play` of play, m, in which the plug is enclosed: it can move to none of four sides
-/// without a lift.
+/// Finds the seats with at most `max_play` of play, m, in which the plug is enclosed: it cannot move to any of the four
+/// sides without being lifted.
 fn enclosed(rests: &HeightMap, [out, turn]: [usize; 2], max_play: f64) -> Vec<CoarseSeat> {
     // Bounds widen the play by up to two cells.
     let radius = (max_play / rests.step[0]).ceil() as i32 + 2;

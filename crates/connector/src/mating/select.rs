@@ -11,7 +11,7 @@ use input::units::MM;
 const SIMILAR: f64 = 0.97;
 /// Largest difference in depth between equal mates, m.
 const SAME: f64 = 0.05 * MM;
-/// Share of the outline of the plug that walls must face over the least depth.
+/// Smallest facing area, as a share of [`LEAST`] times the mean side of the plug in x and y.
 const GUIDED: f64 = 0.25;
 
 /// Width of the rim about the plug within which the height of the socket is measured, m.
@@ -29,7 +29,8 @@ pub fn select(
     let guided = |pose: &&Pose| {
         let [x, y, z] = bounds(&scene.plugs[pose.turn]);
         let size = ((x[1] - x[0]) * (y[1] - y[0])).sqrt();
-        // A plug that sinks in entirely could not be grasped; a ring on a longer post can.
+        // The plug must protrude, or it could not be grasped; a ring lowered over a post protrudes from its
+        // surroundings.
         let held = pose.depth < z[1] - z[0] || z[1] + pose.z > beside(scene, pose, [x, y]);
         pose.depth >= LEAST && held && pose.walls >= LEAST * GUIDED * size
     };
@@ -50,7 +51,7 @@ pub fn select(
     Some(MatingResult { mates, copies })
 }
 
-/// Returns the height of the socket just outside the bounds of a plug in x and y, m.
+/// Returns the largest height of the socket just outside the bounds of a plug in x and y, m.
 fn beside(scene: &Scene, pose: &Pose, plug: [[f64; 2]; 2]) -> f64 {
     let map = &scene.upper[pose.out];
     let cell = |length: f64, axis: usize| (length / map.step[axis]).floor() as i32;

@@ -18,8 +18,9 @@ use rapier3d_f64::parry;
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Smallest cell of the maps, m, and largest number of cells along a side.
+/// Smallest cell of the maps, m.
 const LEAST_CELL: f64 = 0.05 * MM;
+/// Largest number of cells along the side of a map.
 const MOST_CELLS: f64 = 400.0;
 /// Interferences that are tolerated in a withdrawal, m: contact springs are drawn unloaded.
 const INTERFERENCES: [f64; 3] = [0.0, 0.2 * MM, 0.6 * MM];
@@ -42,6 +43,7 @@ type Set = BTreeSet<usize>;
 /// Bodies that can be withdrawn along an axis.
 struct Withdrawal {
     set: Set,
+    /// Area of facing walls minus weighted contact area, m2.
     value: f64,
     /// Whether these bodies are the plug; otherwise the others are.
     plug: bool,
@@ -137,12 +139,15 @@ fn common(face: &Triangle, other: &Triangle) -> (usize, f64) {
 
 /// Height maps of the bodies along an axis.
 struct AxisMaps {
+    /// Side of a cell, m.
     step: f64,
     upper: Vec<HeightMap>,
     lower: Vec<HeightMap>,
+    /// Bounds of each body in x, y and z, m.
     bounds: Vec<[[f64; 2]; 3]>,
+    /// Weighted contact area of each pair, m2.
     contact: BTreeMap<[usize; 2], f64>,
-    /// Areas of the walls of the first body that face the second.
+    /// Areas of the walls of the first body that face the second, m2.
     walls: BTreeMap<[usize; 2], WallAreas>,
 }
 
@@ -171,7 +176,7 @@ impl AxisMaps {
         Vec::new()
     }
 
-    /// Measures the walls that face one another within a reach.
+    /// Measures the walls that face one another within a reach, m.
     fn measure_walls(&mut self, reach: f64) {
         let near = |i: usize, j: usize| {
             (0..3).all(|axis| {
@@ -239,8 +244,8 @@ impl AxisMaps {
         }
     }
 
-    /// Returns the area of the facing walls of a set and the other bodies minus their contact area, m2; `None` for
-    /// the set of all bodies.
+    /// Returns the area of the facing walls of a set and the other bodies minus their weighted contact area, m2; `None`
+    /// for the set of all bodies.
     fn value(&self, set: &Set) -> Option<f64> {
         let separated = |[i, j]: &[usize; 2]| set.contains(i) && !set.contains(j);
         let mut walls = [0.0; 4];

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 
 /// Largest difference between heights of equal parts, m.
 const SAME: f32 = 0.05e-3;
-/// One cell of so many may differ between equal parts.
+/// Number of cells of which one may differ between equal parts.
 const RARE: usize = 1000;
 
 /// Returns a representative of each class of equivalent pairs of a direction out of the socket and a rotation of the

@@ -25,7 +25,7 @@ impl Unit {
     }
 }
 
-/// Direction of insertion in the axes of the files.
+/// Direction in which the plug is inserted, in the axes of the mesh files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub enum Along {
     /// Along x
@@ -48,7 +48,7 @@ pub enum Along {
     MinusZ,
 }
 
-/// Axis of the files along which the jaws close.
+/// Axis of the mesh files along which the jaws close.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub enum Jaws {
     /// Along x

@@ -10,10 +10,10 @@ use std::ffi::OsStr;
 use std::path::Path;
 use std::str::SplitWhitespace;
 
-/// Corners of a triangle, in the unit of the file.
+/// Corners of a triangle: in the unit of the file as read here, in m everywhere else.
 pub type Triangle = [Point3<f64>; 3];
 
-/// A body of a file: `solid` of a text STL, `o` or `g` of an OBJ.
+/// Body of a file: `solid` of a text STL, `o` or `g` of an OBJ.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Body {
     /// Name in the file; may be empty.
@@ -22,8 +22,9 @@ pub struct Body {
     pub triangles: Vec<Triangle>,
 }
 
-/// Bytes before the triangles of a binary STL, and of each triangle.
+/// Bytes before the triangles of a binary STL.
 const HEADER: usize = 84;
+/// Bytes of each triangle of a binary STL.
 const RECORD: usize = 50;
 
 /// Message for STEP files, which the Python package reads.
@@ -94,7 +95,7 @@ fn coordinates(mut words: SplitWhitespace, line: usize) -> Result<Point3<f64>, S
     }
 }
 
-/// Parses the bodies of a text file: STL if `stl`, else OBJ.
+/// Parses the bodies of a text file, STL if `stl`, else OBJ; bodies of the same name are joined.
 fn parse(text: &str, stl: bool) -> Result<Vec<Body>, String> {
     let mut points = Vec::new();
     let mut bodies: Vec<Body> = Vec::new();
@@ -135,7 +136,7 @@ fn parse(text: &str, stl: bool) -> Result<Vec<Body>, String> {
     Ok(bodies)
 }
 
-/// Triangulates a polygon: as a fan, like viewers do, or by ear clipping if it is concave.
+/// Triangulates a polygon: as a fan, as viewers do, or by ear clipping if it is concave.
 fn polygon(corners: &[Point3<f64>]) -> Vec<Triangle> {
     let fan: Vec<Triangle> =
         (2..corners.len()).map(|i| [corners[0], corners[i - 1], corners[i]]).collect();
@@ -157,11 +158,11 @@ fn polygon(corners: &[Point3<f64>]) -> Vec<Triangle> {
     ears.map(outward).collect()
 }
 
-/// Separates the triangles of the selected bodies from all others. If `names` are not names of bodies, they are numbers
-/// of shells, counted from 1.
+/// Returns the triangles of the selected bodies, and those of all others. If any of `names` is not the name of a body,
+/// all are numbers of shells, counted from 1.
 ///
 /// # Errors
-/// If the file lacks one of them; the text lists the available ones.
+/// If the file lacks one of them; the message lists the available ones.
 pub fn pick(
     bodies: &[Body],
     names: &[String],
@@ -202,7 +203,8 @@ pub fn shells(bodies: &[Body]) -> Vec<Body> {
     (1..).zip(found.into_values()).map(named).collect()
 }
 
-/// Returns a vertex by its index, `7`, `7/1` or `7//3`, counted from 1, or from the end if negative.
+/// Returns the vertex that a corner of an OBJ face refers to: `7`, `7/1` or `7//3`, counted from 1, or from the end if
+/// negative.
 fn vertex(word: &str, points: &[Point3<f64>]) -> Option<Point3<f64>> {
     let number: i64 = word.split('/').next()?.parse().ok()?;
     let count = i64::try_from(points.len()).ok()?;

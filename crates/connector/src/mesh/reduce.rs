@@ -9,18 +9,21 @@ use std::collections::{BTreeSet, BinaryHeap};
 
 /// Largest distance of the surface from the corners of the file, m.
 pub const TOLERANCE: f64 = 0.01 * MM;
-/// Largest number of faces of a mesh that is not reduced.
+/// Number of faces above which a mesh is reduced, and at which only collapses on flat sides go on.
 const MANY_FACES: usize = 2000;
-/// Error of a collapse on a flat side, pm: that of files with 32-bit numbers.
+/// Largest error of a collapse on a flat side, pm (1 um): the rounding of files with 32-bit numbers.
 const FLAT: u64 = 1_000_000;
-/// Largest number of faces about a corner that is removed: the pole of a fine dome has hundreds.
+/// Largest number of faces about a corner that is removed; limits the cost at the pole of a finely meshed dome, which
+/// has hundreds.
 const MOST_ABOUT: usize = 64;
 /// Smallest cosine between the normals of a face before and after a collapse.
 const LEAST_COSINE: f64 = 0.5;
 
+/// Mesh during its decimation.
 struct Decimation {
     points: Vec<Point3<f64>>,
     faces: Vec<[usize; 3]>,
+    /// Indices of the faces about each corner; none for a removed corner.
     about: Vec<Vec<usize>>,
     /// Bound on the distance between the faces about a corner and the removed corners, m.
     error: Vec<f64>,
@@ -71,6 +74,7 @@ impl Decimation {
         all.filter(|&other| other != corner).collect()
     }
 
+    /// Queues the cheapest collapse that removes a corner, if one is allowed.
     fn queue(&self, from: usize, queue: &mut BinaryHeap<Queued>) {
         let faces = self.about[from].len();
         let near = if faces > MOST_ABOUT { BTreeSet::new() } else { self.neighbours(from) };
@@ -126,7 +130,8 @@ impl Decimation {
     /// [`TOLERANCE`].
     fn cost(&self, from: usize, to: usize, [mut before, after]: Change) -> Option<f64> {
         let within = |distance: f64| (self.error[from] + distance <= TOLERANCE).then_some(distance);
-        // The removed corner alone is not enough: it can be near a new face where another one fills a hollow.
+        // The distance of the removed corner alone is not enough: a new face can pass near it while another one fills a
+        // concavity.
         let gone = within(Facet::farthest(&before, &after))?;
         let about = self.about[to].iter().map(|&face| self.faces[face]);
         let facet =
@@ -168,7 +173,7 @@ impl Decimation {
 /// Faces about a corner before and after its removal.
 type Change = [Vec<Facet>; 2];
 
-/// Triangle with its unit normal, and samples: its centroid and the midpoint of the edge that starts at a corner.
+/// Triangle with its unit normal and two samples, at the middle of one edge and at the centroid.
 struct Facet {
     corners: [Point3<f64>; 3],
     normal: Vector3<f64>,

@@ -7,7 +7,8 @@ use insertion::task::geometry::surface_moments;
 use nalgebra::Point3;
 use std::collections::BTreeMap;
 
-/// Spacing of the grid to which corners are rounded, m, as for lengths in task files: mesh files have 32-bit numbers.
+/// Spacing of the grid to which corners are rounded, m: that of lengths in task files; it also joins corners that
+/// differ by the rounding of mesh files.
 pub const GRID: f64 = 1e-4 * MM;
 /// Smallest and largest size of a connector, m.
 pub const SIZES: [f64; 2] = [3.0 * MM, 300.0 * MM];

@@ -25,15 +25,18 @@ pub const MOST_WINDOWS: usize = 150;
 const BATCH: usize = 4;
 /// Number of windows measured for a candidate: one for each finger.
 const EACH: usize = 3;
-/// Turn of the socket, degrees, and factors on its friction under which the recommended strategy is checked.
+/// Turn of the socket about z under which strategies are checked, degrees.
 pub const YAW_DEG: f64 = 1.0;
+/// Factors on the friction of the socket under which the recommended strategy is checked.
 const FRICTION: [f64; 2] = [0.8, 1.2];
-/// Number of checked changes, including the unchanged setup, and the indices of those that turn the socket.
+/// Number of checked changes, including the unchanged setup.
 const CHANGES: usize = 5;
+/// Indices of the changes that turn the socket.
 const TURNED: Range<usize> = 1..3;
-/// Largest number of strategies checked with a turned socket and one finger, and number of failures at one tilt after
-/// which other strategies with that tilt are skipped, since similar strategies fail alike.
+/// Largest number of strategies checked with a turned socket and one finger.
 const FINALISTS: usize = 12;
+/// Number of failures at one tilt after which other strategies with that tilt are skipped, since similar
+/// ones fail alike.
 const MOST_FAILED: usize = 2;
 
 /// Stage of tuning.
@@ -63,13 +66,13 @@ pub struct Step {
     pub turned_mm: Option<f64>,
 }
 
-/// Robustness of the recommended strategy to a change: smallest range of three other fingers, mm; 0 if
-/// one of them fails.
+/// Robustness of the recommended strategy to a change: smallest range of the start offsets at which it inserts, of
+/// three other fingers.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Robustness {
     /// The change: `yaw +1°`.
     pub change: String,
-    /// Least range, mm.
+    /// Smallest range, mm; 0 if one of the fingers fails.
     pub least_range_mm: f64,
 }
 
@@ -286,8 +289,8 @@ impl Tuned {
         Ok(())
     }
 
-    /// Returns the end of the trial with the largest margin among the strategies of which no start inserts; `None` if
-    /// there are none.
+    /// Returns the end of the failed trial that came closest to insertion (largest margin), of the strategies with
+    /// which no start inserts; `None` without such strategies.
     pub fn nearest(&self, task: &Task) -> Option<Stopped> {
         let failed = self.steps.iter().filter_map(|step| step.tried.nearest.as_ref());
         let trial = failed.max_by(|a, b| a.margin.total_cmp(&b.margin))?;

@@ -1,4 +1,4 @@
-//! Evaluation of a strategy: windows of a few measured fingers.
+//! Evaluation of a strategy by the windows of a few measured fingers: the ranges of start offsets at which they insert.
 
 use input::units::MM;
 use insertion::evaluation::tolerance::{self, Search, offset};
@@ -32,7 +32,7 @@ pub struct Tuner<'a> {
     pub fingers: [Finger; 3],
     /// Three fingers between these, for checks of the recommended strategy.
     pub others: [Finger; 3],
-    /// Largest force between plug and socket, and largest speed of a phase, of a recommended strategy.
+    /// Largest force between plug and socket, N, and largest speed of a phase, m/s, of a recommended strategy.
     pub limits: Limits,
     /// Stop flag; once it is set, results are invalid.
     pub stop: &'a AtomicBool,
@@ -42,7 +42,7 @@ pub struct Tuner<'a> {
 pub struct MeasuredWindow {
     /// The window.
     pub window: Window,
-    /// Margin of the nominal start: negative if the start fails, 0 if it inserts.
+    /// Margin of the nominal start, as of a [`Trial`] but at most 0: 0 if it inserts, -1 to 0 if it fails.
     pub margin: f64,
     /// Largest force of the insertions, N.
     pub force_n: f64,
@@ -57,8 +57,8 @@ pub struct Candidate {
     pub windows: Vec<Window>,
     /// Largest force of their insertions, N.
     pub force_n: f64,
-    /// Smallest of their ranges, mm, if all insert within the limit of force; otherwise below 0: the smallest
-    /// margin, or the excess of force as a share of the limit.
+    /// Smallest of their ranges, mm, if all insert within the limit of force. Otherwise below 0: the smallest margin,
+    /// minus 1 if the medium finger inserts from no start; or minus the excess of force, as a share of the limit.
     pub score: f64,
     /// Trial of the medium finger with the largest margin, if all starts fail.
     pub nearest: Option<Box<Trial>>,
@@ -66,7 +66,8 @@ pub struct Candidate {
     pub cost: usize,
 }
 
-/// Returns the measured fingers at six places between the softest and the stiffest.
+/// Returns six of the measured fingers, by their rank in stiffness: soft, medium and stiff, and three others between
+/// them.
 pub fn fingers() -> [Finger; 6] {
     let mut designs = designs();
     designs.sort_by(|a, b| a.compliance.total_cmp(&b.compliance));
@@ -96,7 +97,7 @@ impl<'a> Tuner<'a> {
         self.stop.load(Ordering::SeqCst)
     }
 
-    /// Measures the windows of fingers under some conditions, from the strategy's own start.
+    /// Measures the windows of fingers about the strategy's own start, under these conditions.
     pub fn windows(
         &self,
         strategy: &Strategy,
@@ -165,6 +166,7 @@ impl<'a> Tuner<'a> {
         all
     }
 
+    /// Scores a strategy by the windows of the three fingers.
     fn tried(&self, strategy: Strategy, found: Vec<MeasuredWindow>) -> Candidate {
         let worst = found.iter().map(|found| found.margin).fold(0.0, f64::min);
         let force_n = found.iter().map(|found| found.force_n).fold(0.0, f64::max);

@@ -21,7 +21,7 @@ pub struct SearchVariable {
     prior: Parameter,
 }
 
-/// Quantity of a strategy that a variable sets.
+/// Quantity of a strategy that a variable sets; the number is the index of its phase.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Target {
     Tilt,

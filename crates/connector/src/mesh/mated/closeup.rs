@@ -9,8 +9,9 @@ use input::units::MM;
 use insertion::task::{Part, geometry};
 use nalgebra::{Point2, Point3};
 
-/// Size of a panel with the gap to the next, and without it, pixels.
+/// Size of a panel with the gap to the next one, pixels.
 const PANEL: f64 = 460.0;
+/// Size of a panel without the gap, pixels.
 const INSIDE: f64 = PANEL - 10.0;
 /// Distance from the point to the sides of a panel, m.
 const AROUND: f64 = 1.0 * MM;
@@ -18,8 +19,8 @@ const DRAWN: [Style; 2] = [Style::line("#8a5a10", 2.0), Style::line("#56657d", 2
 const PARTS: [Style; 2] =
     [Style::line("#e8a33d", 1.0).dashed(), Style::line("#1c5fb0", 1.0).dashed()];
 
-/// Draws sections through a point in the task frame: the drawn faces and the convex parts of the plug, at its pose, and
-/// of the socket.
+/// Draws three sections through `place`, task frame, m, as an SVG: drawn faces and convex parts of the socket, and of
+/// the plug at `pose`.
 pub fn svg(bodies: &Bodies, pose: &Pose, place: Point3<f64>) -> String {
     let mut drawing = Drawing::default();
     drawing.white_background();

@@ -1,5 +1,5 @@
-//! Check of the gap between plug and socket: by their convex parts and by the drawn faces, at poses about the mated
-//! one.
+//! Comparison of the gap between the convex parts of plug and socket with that between their drawn faces, at poses near
+//! the mated one.
 
 use super::{Interference, TOLERANCE};
 use crate::body::ConvexBody;
@@ -21,7 +21,8 @@ const POSES: u32 = 1000;
 const WIDE: f64 = 0.1 * MM;
 /// Deviation of poses beyond the play, m.
 const BEYOND: f64 = 0.1 * MM;
-/// Heights above the seat, m: the smallest, the range of every other pose, and that of the rest beyond the depth.
+/// Heights of the poses above the seat, m: the smallest; the range above it for every other pose; and for the rest, by
+/// how much this range exceeds the depth.
 const HEIGHTS: [f64; 3] = [0.03 * MM, 1.0 * MM, 0.5 * MM];
 /// Smallest lever arm of a rotation, m.
 const ARM: f64 = 2.0 * MM;
@@ -222,7 +223,7 @@ mod tests {
             play,
         };
         assert_eq!(difference(&bodies, &[]), None);
-        // A wall that is 0.05 mm off, and one that is not there.
+        // A wall that is 0.05 mm off, and one that is missing.
         let moved: Vec<Triangle> = socket.iter().map(|face| face.map(|p| p * 1.025)).collect();
         let wrong = task(&Pair { drawn: [&plug, &moved], ..pair }, "tube", None, None);
         let off = wrong.difference.unwrap();

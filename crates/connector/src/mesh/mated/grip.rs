@@ -16,7 +16,7 @@ const LEAST_HEIGHT: f64 = 3.0 * MM;
 const LEAST_WIDTH: f64 = 1.0 * MM;
 /// Smallest distance of pads and handle from the socket, m.
 const CLEAR: f64 = 0.5 * MM;
-/// Ratio of areas above which the faces across the second axis are held in place of those across the first.
+/// Ratio of areas above which a grasp across the second axis is preferred to one across the first.
 const MUCH_LARGER: f64 = 2.0;
 /// Smallest cosine between the normal of a face and y.
 const PARALLEL: f64 = 0.9998;
@@ -36,7 +36,7 @@ pub struct Grasp {
     pub area: f64,
 }
 
-/// Upright face: its y, and its extent in x and z.
+/// Upright face: its y, and its extent in x and z, m.
 struct Face {
     y: f64,
     x: [f64; 2],
@@ -62,8 +62,8 @@ pub struct Rejected {
     pub reason: &'static str,
 }
 
-/// Returns the grasp at the largest faces of the plug that keeps the pads above `free`, m, and the largest faces above
-/// `free` that the fingers cannot hold.
+/// Returns the grasp at the largest faces of the plug that keeps the pads above `free` (height of the mated socket's
+/// top, plug frame, m), and the largest faces above `free` that the fingers cannot hold.
 pub fn own(plug: &[Triangle], free: f64) -> (Option<Grasp>, Option<Rejected>) {
     let [left, right] = [-1.0, 1.0].map(|sign| faces(plug, sign));
     let (mut best, mut rejected): ((f64, Option<Grasp>), Option<Rejected>) = ((0.0, None), None);

@@ -1,4 +1,5 @@
-//! Task from a plug and a socket whose mated pose is known: skins as convex parts, grip, search and success.
+//! Task from the meshes of a plug and a socket whose mated pose is known: convex parts along their surfaces, grasp,
+//! strategy and success criterion.
 
 mod closeup;
 pub mod gaps;
@@ -24,26 +25,26 @@ pub use verify::{Deviation, TOLERANCE};
 
 /// Size of the handle that is added to a plug without faces to hold: in x, between the jaws, and length, m.
 pub const HANDLE: [f64; 3] = [12.0 * MM, 10.0 * MM, 20.0 * MM];
-/// Height of the tip whose middle is the plug's axis, m.
+/// Height of the tip of the plug, m; its axis goes through the middle of the tip.
 const TIP: f64 = 1.0 * MM;
 /// Smallest play assumed between plug and opening, m.
 const LEAST_PLAY: f64 = 0.02 * MM;
 
-/// Pair in its mated pose.
+/// Meshes of a plug and a socket in their mated pose.
 pub struct Pair<'a> {
     /// Plug, mated, m.
     pub plug: &'a [Triangle],
     /// Socket in the same axes, m.
     pub socket: &'a [Triangle],
-    /// Plug and socket with all faces of their drawing.
+    /// Plug and socket as in their files, before gaps are closed and faces reduced, m.
     pub drawn: [&'a [Triangle]; 2],
     /// Direction in which the plug is withdrawn.
     pub out: Vector3<f64>,
-    /// Directions across it along which the jaws may close, the preferred one first.
+    /// Directions perpendicular to `out` along which the jaws may close, the preferred one first.
     pub jaws: &'a [Vector3<f64>],
-    /// Depth over which they engage, m.
+    /// Depth of the plug's tip below the socket's opening, m.
     pub engaged: f64,
-    /// Play along two directions across, m.
+    /// Two directions perpendicular to `out`, and the total play along each, m.
     pub play: [(Vector3<f64>, f64); 2],
 }
 
@@ -54,7 +55,7 @@ pub struct PairTask {
     pub task: Task,
     /// Direction along which the jaws close.
     pub jaws: Vector3<f64>,
-    /// Size of the body in x between the pads, m.
+    /// Width in x of the part between the pads, m.
     pub held: f64,
     /// Whether the plug is held by a handle that its drawing lacks.
     pub handle: bool,
@@ -82,7 +83,9 @@ struct AlignedPair {
     plug: Vec<Triangle>,
     socket: Vec<Triangle>,
     drawn: [Vec<Triangle>; 2],
+    /// Direction along which the jaws close, in the axes of the [`Pair`].
     jaws: Vector3<f64>,
+    /// Total play in x and in y, m.
     play: [f64; 2],
 }
 
@@ -114,8 +117,9 @@ impl AlignedPair {
     }
 }
 
-/// Returns the task of a pair in its mated pose, with this name; all keys but the shapes are taken from `like`, and the
-/// plug has a handle of a size (x, between the jaws, length), m, in place of its own faces, if one is given.
+/// Returns the task of a pair in its mated pose; friction, fingers, grasp force, limits and the family of the strategy
+/// are those of `like`, if it is given. With a `size` (in x, between the jaws, length, m), the plug is held by a handle
+/// of this size, else by its own faces if possible.
 pub fn task(pair: &Pair, name: &str, like: Option<&Task>, size: Option<[f64; 3]>) -> PairTask {
     // Rounded to the grid of files, so that corners stay on it.
     let pair = &Pair { engaged: snap(pair.engaged), ..*pair };
@@ -174,7 +178,8 @@ pub fn task(pair: &Pair, name: &str, like: Option<&Task>, size: Option<[f64; 3]>
     PairTask { task, jaws, held, handle, rejected, interference, deviation, difference, closeup }
 }
 
-/// Returns the parts of plug and socket that the other body can touch, and their worst deviation from the drawing.
+/// Returns the parts of plug and socket that the other body can touch, and the worst deviation of the plug (0) from its
+/// drawing or, if there is none, that of the socket (1).
 fn skins(placed: &AlignedPair, depth: f64) -> ([Vec<Part>; 2], Option<(usize, Deviation)>) {
     let mated: Vec<Triangle> =
         placed.plug.iter().map(|t| t.map(|p| p - Vector3::z() * depth)).collect();
@@ -188,7 +193,8 @@ fn skins(placed: &AlignedPair, depth: f64) -> ([Vec<Part>; 2], Option<(usize, De
     ([plug.into_iter().map(up).collect(), socket], worst)
 }
 
-/// Returns the parts for the faces that can be touched, and their worst deviation from the drawing.
+/// Returns the parts for the faces that can be touched, and the part that protrudes most from the drawing or, if none
+/// does, a face without a part.
 fn checked_skin(
     name: &str,
     triangles: &[Triangle],
@@ -207,6 +213,7 @@ fn checked_skin(
     (parts, worst)
 }
 
+/// Moves a solid along z, m.
 fn raised(solid: Solid, by: f64) -> Solid {
     let up = Vector3::z() * by;
     match solid {

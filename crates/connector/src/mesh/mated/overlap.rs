@@ -21,7 +21,7 @@ const FIT: f64 = 0.1 * MM;
 pub const GAP: f64 = 0.025 * MM;
 /// Smallest overlap that is considered, m.
 const LEAST: f64 = 1e-3 * MM;
-/// Step along the way, m.
+/// Step along the path to the mated pose, m.
 const STEP: f64 = 0.2 * MM;
 /// Smallest component of a normal along the axis at which an overlap belongs to a stop.
 const ALONG: f64 = 0.7;
@@ -263,7 +263,7 @@ pub(super) mod tests {
         assert!((high - 0.275 * MM).abs() < 1e-9, "{high}");
     }
 
-    /// A pin that fills its hole, without an overlap: room to every side.
+    /// A pin that fills its hole without overlap gets a gap on every side.
     #[test]
     fn a_fit_without_play_gets_room() {
         let mut bodies = [vec![part([-0.3, -0.3, 0.0], [0.3, 0.3, 6.0])], hole()];

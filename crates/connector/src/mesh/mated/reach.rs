@@ -12,11 +12,12 @@ const CELL: f64 = 0.12 * MM;
 const ASIDE: f64 = 0.6 * MM;
 /// Allowance in height, m.
 const ABOVE: f64 = 0.6 * MM;
-/// Height of the plug's tip and of the socket's rim that meet in the search, m.
+/// Height of the zones at the plug's tip and at the socket's rim that can touch during the search moves, m.
 const SEARCHED: f64 = 1.5 * MM;
 /// Largest distance of the search moves from the opening, m.
 const SEARCH: f64 = 4.0 * MM;
-/// Sine of the slope beyond which a face points away from the other body, which comes along the axis, at most tilted.
+/// Component of a normal along the axis, away from the other body, above which that body cannot touch the face; more
+/// than 0, because the plug can be tilted.
 const AWAY: f64 = 0.35;
 /// Largest number of cells along one side of a map.
 const MOST_CELLS: f64 = 2000.0;
@@ -88,6 +89,7 @@ impl UpperEnvelope {
 pub struct Reach {
     socket: UpperEnvelope,
     plug: UpperEnvelope,
+    /// Height of the plug's tip, m.
     tip: f64,
     /// Distance in front of a face within which the other body must pass, m.
     aside: f64,

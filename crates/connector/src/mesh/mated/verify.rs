@@ -1,5 +1,5 @@
-//! Comparison of convex parts with the drawn body that they approximate: samples of its faces must lie near a part, and
-//! the corners of the parts must not lie outside it.
+//! Comparison of convex parts with the drawn body (the mesh of the file) that they approximate: its faces must lie near
+//! a part, and no corner of a part may lie outside the drawn body.
 
 use crate::body::ConvexBody;
 use crate::mesh::Triangle;
@@ -15,11 +15,12 @@ use rayon::prelude::*;
 
 /// Largest accepted distance between parts and drawing, m.
 pub const TOLERANCE: f64 = 0.02 * MM;
-/// Margin between the samples of a triangle and its edges, as a share of its size.
+/// Three times the distance of the outermost samples of a triangle from an edge, as a share of the height above that
+/// edge.
 const MARGIN: f64 = 0.1;
-/// Spacing of samples, m.
+/// Largest spacing of samples along a side, m, up to [`MOST_SAMPLES`].
 const SPACING: f64 = 0.5 * MM;
-/// Largest number of samples along the side of a triangle.
+/// Largest number of intervals between samples along the side of a triangle.
 const MOST_SAMPLES: usize = 12;
 
 /// Place where parts and drawing differ.
@@ -27,26 +28,28 @@ const MOST_SAMPLES: usize = 12;
 pub struct Deviation {
     /// Place, m.
     pub place: Point3<f64>,
-    /// Distance by which a part protrudes from the drawn body, m; `None` where a drawn face has no part.
+    /// Distance by which a part protrudes from the drawn body, m; `None` where no part covers a drawn face.
     pub out: Option<f64>,
 }
 
 /// Drawn body with which parts are compared.
 pub struct Drawn<'a> {
+    /// Triangles with outward normals, m.
     triangles: &'a [Triangle],
+    /// The same triangles, mm; `None` if parry rejects them: then no part counts as protruding.
     mesh: Option<TriMesh>,
 }
 
 impl<'a> Drawn<'a> {
-    /// Creates the body enclosed by outward triangles, m.
+    /// Creates the body enclosed by triangles with outward normals, m.
     pub fn new(triangles: &'a [Triangle]) -> Self {
         let points = triangles.iter().flatten().map(|p| (p.coords / MM).into()).collect();
         let faces = (0..triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
         Drawn { triangles, mesh: TriMesh::new(points, faces).ok() }
     }
 
-    /// Returns the nearest point of the surface and its distance, m; `None` for a place that is inside the body or
-    /// outside by no more than the tolerance.
+    /// Returns the nearest point of the surface and its distance, m, for a place outside the body by more than the
+    /// tolerance, and `None` for any other place.
     fn outside(&self, place: &Point3<f64>) -> Option<(Point3<f64>, f64)> {
         let point: Vector = (place.coords / MM).into();
         let near = self.mesh.as_ref()?.project_local_point(point, false).point;
@@ -55,8 +58,8 @@ impl<'a> Drawn<'a> {
             .then(|| (Point3::from(Vector3::from(near) * MM), distance))
     }
 
-    /// Moves the corners of a slab that are outside the body to its surface; `None` if the slab still protrudes, as it
-    /// can behind a sharp edge.
+    /// Moves the corners of a convex solid that are outside the body to its surface; `None` if the result still
+    /// protrudes, for example behind a sharp edge.
     pub fn trimmed(&self, solid: Solid) -> Option<Solid> {
         let corners = solid.corners();
         let moved =
@@ -66,7 +69,7 @@ impl<'a> Drawn<'a> {
         self.protrusion(&solid).is_none().then_some(solid)
     }
 
-    /// Returns the first corner or face centre of a convex part that is outside the body.
+    /// Returns the first corner or centre of a hull triangle of a convex solid that is outside the body.
     fn protrusion(&self, solid: &Solid) -> Option<Deviation> {
         let (corners, faces) = geometry::hull(&solid.corners())?;
         let middles = faces.iter().map(|face| {
@@ -79,7 +82,8 @@ impl<'a> Drawn<'a> {
         corners.iter().copied().chain(middles).find_map(off)
     }
 
-    /// Returns the samples of the `kept` faces without a part nearby, and the places at which parts protrude.
+    /// Returns the samples of the faces `kept` (those that the other body can touch) without a part nearby, and one
+    /// place of each part that protrudes.
     pub fn deviations(&self, kept: &[Triangle], parts: &[Part]) -> Vec<Deviation> {
         let body = ConvexBody::new(parts);
         let uncovered = |triangle: &Triangle| -> Vec<Deviation> {
@@ -149,7 +153,7 @@ mod tests {
         let bare = Drawn::new(&drawn).deviations(&drawn, &[short]);
         assert!(!bare.is_empty() && bare.iter().all(|d| d.out.is_none() && d.place.z > 3.9 * MM));
     }
-    /// Otherwise the rounding of a file could change the solid or make it invalid.
+    /// Off the grid, the rounding in files could change the solid or make it invalid.
     #[test]
     fn trimmed_corners_are_on_the_grid_of_files() {
         let solid = part([1.0, 1.0, 3.0], [2.0, 2.0, 4.1]).solid;

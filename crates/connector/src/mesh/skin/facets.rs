@@ -6,9 +6,9 @@ use input::units::MM;
 use nalgebra::{Point3, Vector3};
 use std::collections::BTreeMap;
 
-/// Largest distance of the corners of a face from its plane, m.
+/// Largest distance of the corners of a flat face from its plane, m.
 const FLAT: f64 = 4e-3 * MM;
-/// Smallest cosine between the normals of the triangles of a face.
+/// Smallest cosine between the normals of a flat face and of one of its triangles.
 const MIN_COSINE: f64 = 0.97;
 /// Height below which a triangle counts as degenerate, m.
 pub const NARROW: f64 = 5e-4 * MM;
@@ -21,7 +21,7 @@ pub struct Facets {
     pub faces: Vec<[usize; 3]>,
     /// Unit normals; zero for a degenerate triangle.
     pub normals: Vec<Vector3<f64>>,
-    /// Triangle across each edge (from corner i to i + 1), if there is exactly one.
+    /// Triangle across each edge (from corner i to i + 1), if there is exactly one of the same orientation.
     pub across: Vec<[Option<usize>; 3]>,
 }
 
@@ -61,8 +61,8 @@ impl Facets {
         (b - a).cross(&(c - a)).norm()
     }
 
-    /// Returns the triangles of each flat face, the first of which defines its plane, and the index of the flat face of
-    /// each triangle.
+    /// Groups the triangles into flat faces: returns the triangles of each face, with the one that defines its plane
+    /// first, and the index of each triangle's face.
     pub fn flats(&self) -> (Vec<Vec<usize>>, Vec<usize>) {
         let mut order: Vec<usize> = (0..self.faces.len()).collect();
         order.sort_by(|a, b| self.double_area(*b).total_cmp(&self.double_area(*a)));
@@ -95,7 +95,7 @@ impl Facets {
         (flats, flat_of)
     }
 
-    /// Returns the sets of triangles that are connected by edges.
+    /// Returns the sets of triangles that are connected across edges (a common corner is not enough).
     pub fn shells(&self) -> Vec<Vec<usize>> {
         let mut seen = vec![false; self.faces.len()];
         let mut shells = Vec::new();

@@ -1,4 +1,5 @@
-//! Analyses of one finger beyond its tolerance window: levers, sensitivity, capture map.
+//! Analyses of one finger beyond its tolerance window: levers (one-at-a-time sensitivity), Sobol indices and capture
+//! map.
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 #![deny(clippy::print_stdout, clippy::print_stderr)]

@@ -1,5 +1,5 @@
-//! Inputs of a sensitivity analysis (the keys of a space and the errors of a cell), and the evaluation that they
-//! determine.
+//! Inputs of a variance-based sensitivity analysis (parameters of the search space and random errors of the cell), and
+//! the evaluation at given inputs.
 
 use insertion::evaluation::Evaluation;
 use insertion::evaluation::evaluator::Evaluator;
@@ -12,8 +12,8 @@ use parameters::Parameter;
 use parameters::numbers::Kind;
 use std::sync::atomic::AtomicBool;
 
-/// Returns the inputs that are varied together, in the order of the axes of the unit cube: every
-/// key of the space that has a range, then every nonzero error of the cell.
+/// Returns the inputs that are varied together, in the order of the axes of the unit cube: the parameters of the space
+/// whose bounds differ, then the nonzero errors of the cell.
 ///
 /// # Errors
 /// If the space has no infill density or direction.
@@ -28,8 +28,8 @@ pub fn inputs(space: &Space, errors: Option<&Errors>) -> Result<Vec<Parameter>, 
     Ok(of_space.chain(errors.map(Errors::parameters).unwrap_or_default()).collect())
 }
 
-/// Evaluates the insertion at a point of the unit cube of these inputs, by the coarse-to-fine
-/// search. The result is invalid once `stop` is set.
+/// Measures the tolerance window at `unit`, a point of the unit cube of the inputs, by strides and bisection. The
+/// result is invalid once `stop` is set.
 ///
 /// # Errors
 /// If the point's design, specimen or rig cannot be built.

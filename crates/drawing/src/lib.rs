@@ -22,7 +22,7 @@ pub struct View {
 }
 
 impl View {
-    /// Returns the position on the drawing of a point of the view, whose y axis points up.
+    /// Converts a point of the view, whose y axis points up, to a point of the drawing.
     pub fn place(&self, point: Point2<f64>) -> Point2<f64> {
         self.origin + self.scale * Vector2::new(point.x, -point.y)
     }
@@ -35,8 +35,8 @@ pub struct Drawing {
 }
 
 impl Drawing {
-    /// Returns the drawing as a stand-alone SVG with a width and height. They are its true size in `unit` (`mm`); if
-    /// `unit` is empty, the viewer chooses the size.
+    /// Returns the drawing as a stand-alone SVG of a width and height. If `unit` (`mm`) is not empty, it is printed at
+    /// this size; otherwise the viewer chooses the size.
     pub fn svg(self, [width, height]: [f64; 2], unit: &str) -> String {
         let [wide, high] = [width, height].map(rounded);
         let size = match unit {
@@ -62,7 +62,8 @@ impl Drawing {
         self.element("</g>");
     }
 
-    /// Draws a panel with a border at which its elements are clipped; their origin is its upper left corner.
+    /// Draws a panel with a border, at which the elements in it are clipped; their origin is the panel's upper left
+    /// corner.
     pub fn panel(&mut self, corner: Point2<f64>, size: [f64; 2], draw: impl FnOnce(&mut Self)) {
         let [x, y, width, height] = [corner.x, corner.y, size[0], size[1]].map(rounded);
         self.element(&format!("<svg x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\">"));

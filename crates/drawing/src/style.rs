@@ -33,7 +33,7 @@ impl Style {
         Style { opacity, ..self }
     }
 
-    /// Returns the style with a dashed line.
+    /// Returns the style with a dashed line: dashes of 5, gaps of 3 line widths.
     pub const fn dashed(self) -> Self {
         Style { dashed: true, ..self }
     }
@@ -66,7 +66,7 @@ pub struct Font {
 }
 
 impl Font {
-    /// Returns a dark font of a size; text starts at its point.
+    /// Returns a dark grey font of a size, whose text starts at its point.
     pub const fn new(size: f64) -> Self {
         Font { size, colour: "#222", anchor: "start", bold: false }
     }
@@ -93,6 +93,7 @@ impl Font {
 
     /// Returns the font, reduced if necessary to fit a text into a width, but not below the size `least`.
     pub fn fitting(self, words: &str, width: f64, least: f64) -> Self {
+        // Assumed mean width of a character: 0.52 of the size.
         let fits = width / (0.52 * words.chars().count() as f64);
         Font { size: self.size.min(fits.max(least)), ..self }
     }

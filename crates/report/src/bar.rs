@@ -1,5 +1,5 @@
-//! The window of the recommended finger as bars over the start's offset: simulated, firm, computed from
-//! its ribs, and measured on a robot.
+//! Windows of the recommended finger as bars over the offset of the start: simulated, firm (all repeats insert),
+//! simulated with the stiffness computed from its ribs, and measured on a robot.
 
 use crate::answer::words::{design, end, ends_mm, interval, mm, on, span};
 use crate::answer::{
@@ -14,27 +14,29 @@ use study::{BenchPrediction, ByRibs};
 /// Share of the width on either side that is reserved for the labels of a bar's ends.
 const MARGIN: f64 = 0.2;
 
-/// A bar: label, parts from outer to inner (each with its CSS class), and outcomes beyond its ends.
+/// Bar: label, parts from outer to inner (CSS class and both ends, mm), and outcomes beyond its ends.
 struct Bar {
     name: String,
     parts: Vec<(&'static str, [f64; 2])>,
     ends: [Option<Outcome>; 2],
-    /// Whether only the range is known: the parts then begin at 0 and have no position on the scale.
+    /// Whether only the range is known: the parts then extend from 0 to it and have no position on the scale.
     width_only: bool,
 }
 
 impl Bar {
+    /// Returns a bar at its position on the scale.
     fn placed(name: String, parts: Vec<(&'static str, [f64; 2])>, window: Option<&Window>) -> Self {
         let ends = window.map_or([None; 2], |window| [window.end_negative, window.end_positive]);
         Bar { name, parts, ends, width_only: false }
     }
 
-    /// Returns a bar of ranges, mm, from outer to inner, without the ends of their windows.
+    /// Returns a bar of windows of which only the ranges, mm, are known, from outer to inner.
     fn width_only(name: String, ranges_mm: &[(&'static str, f64)]) -> Self {
         let parts = ranges_mm.iter().map(|&(class, range_mm)| (class, [0.0, range_mm])).collect();
         Bar { width_only: true, ..Bar::placed(name, parts, None) }
     }
 
+    /// Returns the bar of a simulated window with its firm part, mm, if it was repeated.
     fn simulated(window: &Window, firm: Option<[f64; 2]>) -> Self {
         let whole = ends_mm(window);
         let inner = firm.map(|firm| ("firm", firm));
@@ -50,8 +52,8 @@ impl Bar {
     }
 }
 
-/// Returns the bars of each task and, below them on the same scale, those of the finger with other robots; `None` if no
-/// finger is recommended.
+/// Returns the bars of each task and, below them on the same scale, those of the finger on each of `robots`; `None` if
+/// no finger is recommended.
 pub(super) fn section(answer: &Answer, robots: &[RobotWindow]) -> Option<Markup> {
     answer.verdict.finger()?;
     let with_robots = |task: &str, mut rows: Vec<Bar>| {
@@ -69,7 +71,7 @@ pub(super) fn section(answer: &Answer, robots: &[RobotWindow]) -> Option<Markup>
     })
 }
 
-/// Returns the bar of the finger with a given robot.
+/// Returns the bar of the finger on a robot, empty if the nominal start fails.
 fn on_robot(robot: &RobotWindow) -> Bar {
     let window = &robot.measured.window;
     let inserts = window.nominal == Outcome::Inserted;
@@ -78,7 +80,7 @@ fn on_robot(robot: &RobotWindow) -> Bar {
 }
 
 fn rows(answer: &Answer, found: &Recommended, (at, task): (usize, &OnTask)) -> Vec<Bar> {
-    // Only the recommended design was confirmed, not the safe choice.
+    // The firm window and the window by the ribs are those of `found.design`, not of the safe choice.
     let other = answer.design_to_print().filter(|named| named.index != found.design.index);
     let mut rows = vec![match other.and_then(|named| named.on(at)) {
         Some(other) => Bar::simulated(&other.window, None),
@@ -159,7 +161,7 @@ fn bars(on: &str, rows: &[Bar]) -> Markup {
     }
 }
 
-/// Returns the parts of a bar; `at` maps a length, mm, to a position, percent of the width.
+/// Returns the parts of a bar as HTML; `at` maps a length, mm, to a position, percent of the width.
 fn filled(parts: &[(&'static str, [f64; 2])], at: impl Fn(f64) -> f64) -> Markup {
     html! {
         @for (class, [from, to]) in parts {
@@ -172,7 +174,7 @@ fn percent(value: f64) -> String {
     format!("{value:.1}%")
 }
 
-/// Returns an outcome in a word, a failure with the number of its class: `jammed (3)`.
+/// Returns the short name of an outcome, for a failure with the number of its class: `jammed (3)`.
 fn class(outcome: Outcome) -> String {
     let number = outcome.failure().map_or(String::new(), |number| format!(" ({number})"));
     format!("{}{number}", outcome.short())

@@ -1,4 +1,4 @@
-//! Predicted bench performance of the fingers.
+//! Predicted ranges of the fingers on the bench, the user's robot.
 
 use super::elements::table;
 use crate::answer::words::{design, interval, mm};

@@ -1,4 +1,4 @@
-//! Text output of `optimize calibrate`: bench predictions and posteriors of the parameters.
+//! Text output of `optimize calibrate`: predicted ranges on the user's robot (bench) and posteriors of the parameters.
 
 use super::text_table;
 use crate::answer::words::design;
@@ -10,7 +10,7 @@ use calibration::table::{ParameterUpdate, by_range, confounded, updates, warning
 /// Number of fingers in the table.
 const LISTED: usize = 5;
 
-/// Returns the result for a task, within 80 columns.
+/// Returns the result for a task as text within 80 columns.
 pub fn text(subject: &Subject, result: &TaskResult) -> String {
     let accuracy = result.accuracy(subject.emulator.error_mm);
     let emulator = &subject.emulator;
@@ -46,7 +46,7 @@ pub fn text(subject: &Subject, result: &TaskResult) -> String {
     text
 }
 
-/// Returns prior and posterior intervals of the parameters, within 80 columns.
+/// Returns prior and posterior 10 % to 90 % intervals of the parameters as a table within 80 columns.
 pub fn parameters_text(calibration: &Calibration) -> String {
     let row = |one: ParameterUpdate| {
         let span = |low: f64, high: f64| format!("{low:.2} to {high:.2}");

@@ -19,7 +19,7 @@ pub(super) type Chart<'a, 'b> =
 pub(super) type PlotError = Box<dyn std::error::Error>;
 pub(super) type DrawResult = Result<(), PlotError>;
 
-/// Draws on a blank canvas of `size` pixels and returns the SVG.
+/// Draws on a blank canvas of `size`, pixels, and returns the SVG; `plot` is the name for error messages.
 pub(super) fn render(
     plot: &'static str,
     size: (u32, u32),
@@ -49,8 +49,8 @@ pub(super) fn axes<'a, 'b>(
     framed(area, title, x, y, 62, true)
 }
 
-/// Draws an x axis with vertical grid lines for `count` rows; row i extends from y = -i down to
-/// -(i + 1). `left` is the room for the row names, pixels.
+/// Draws an x axis with vertical grid lines for `count` rows; row i, from 0, extends from y = -i down to -(i + 1).
+/// `left` is the width for the row names, pixels.
 pub(super) fn rows<'a, 'b>(
     area: &'a Area<'b>,
     title: &str,
@@ -61,7 +61,7 @@ pub(super) fn rows<'a, 'b>(
     framed(area, title, x, ("", -(count.max(1) as f64)..0.0), left, false)
 }
 
-/// Draws axes with `left` pixels for the labels of y.
+/// Draws axes, with `left` pixels for the labels of y; without `y_grid` no y axis.
 fn framed<'a, 'b>(
     area: &'a Area<'b>,
     title: &str,
@@ -112,7 +112,7 @@ pub(super) fn legend<'a, 'b: 'a>(
     Ok(legend?)
 }
 
-/// Returns the viewer's default sans-serif font.
+/// Returns the viewer's default sans-serif font in a size, pixels.
 pub(super) fn font(size: u32) -> FontDesc<'static> {
     ("sans-serif", size).into_font().transform(FontTransform::None)
 }
@@ -122,7 +122,8 @@ pub(super) fn text_style(size: u32, colour: Colour, h: HPos, v: VPos) -> TextSty
     font(size).color(&colour.rgb).pos(Pos::new(h, v))
 }
 
-/// Returns the range of the finite values, widened by a share `room` of it on either side.
+/// Returns the interval of the finite values, widened by a share `room` of it on either side; by 0.5 if they are equal,
+/// 0 to 1 if there are none.
 pub(super) fn padded_range(values: impl Iterator<Item = f64>, room: f64) -> Range<f64> {
     let [low, high] = extent(values.filter(|v| v.is_finite()));
     if low > high {

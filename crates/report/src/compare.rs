@@ -17,10 +17,11 @@ use study::{StudyConfig, StudyRecord};
 
 /// Distance of the target below the best known value, mm.
 const TOLERANCE_MM: f64 = 0.1;
-/// Rounding error of values, which are multiples of 0.1 mm.
+/// Tolerance for the rounding of values, which are multiples of 0.1 mm.
 const ROUNDING_MM: f64 = 1e-9;
 
-/// Quartiles over studies; `None` where a study has no value yet or never reached the target.
+/// Quartiles over studies. Studies without a value or without reaching the target count as infinite; a quartile that
+/// depends on them is `None`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Quartiles {
     /// Lower quartile.
@@ -32,7 +33,7 @@ pub struct Quartiles {
 }
 
 impl Quartiles {
-    /// Interpolates linearly between the sorted values; `None` next to an infinite one.
+    /// Interpolates linearly between the sorted values; `None` if one of the two is infinite.
     fn of(values: Vec<f64>) -> Self {
         let values = sorted(values);
         let quantile =
@@ -49,7 +50,7 @@ impl Quartiles {
 /// Studies of one optimizer with different seeds.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct OptimizerGroup {
-    /// Name of the optimizer, with its polish.
+    /// Name of the optimizer, with the evaluations of its final local search (polish): `gp+polish20`.
     pub optimizer: String,
     /// Designs proposed at a time.
     pub batch: u64,
@@ -84,7 +85,8 @@ pub struct Comparison {
 /// Compares studies, each with a name for messages.
 ///
 /// # Errors
-/// If their problems differ, a study is given twice, or none has a value.
+/// If their problems differ, their objective is not a single length to be maximized, a study is given twice, or none
+/// has a value.
 pub fn compare(studies: &[(String, StudyRecord)]) -> Result<Comparison, String> {
     let first = studies.first().ok_or("give at least one study to compare")?;
     studies.iter().try_for_each(|study| check_same_problem(first, study))?;
@@ -136,7 +138,7 @@ pub fn compare(studies: &[(String, StudyRecord)]) -> Result<Comparison, String> 
     })
 }
 
-/// Returns the parts of a study's problem, each with its name.
+/// Returns the settings in which compared studies must agree, each with its name.
 fn problem(config: &StudyConfig) -> [(&'static str, String); 7] {
     let limits: Vec<String> = config.constraints.iter().map(Constraint::to_string).collect();
     let aggregate = config.aggregate.as_ref().map_or("none".to_owned(), Aggregate::to_string);
@@ -151,7 +153,7 @@ fn problem(config: &StudyConfig) -> [(&'static str, String); 7] {
     ]
 }
 
-/// Checks that two studies have the same problem.
+/// Checks that two studies agree in the settings of [`problem`].
 fn check_same_problem(
     (first, ours): &(String, StudyRecord),
     (second, theirs): &(String, StudyRecord),
@@ -181,6 +183,7 @@ fn curve(record: &StudyRecord) -> Vec<f64> {
     std::iter::repeat_n(f64::NEG_INFINITY, none).chain(values).collect()
 }
 
+/// Table headings; the quartiles are of the number of evaluations to the target.
 const HEAD: [&str; 7] = ["optimizer", "batch", "studies", "reached", "25 %", "median", "75 %"];
 
 impl OptimizerGroup {
@@ -284,7 +287,7 @@ fn draw(area: &Area<'_>, comparison: &Comparison, title: &str) -> DrawResult {
     legend(&mut chart, SeriesLabelPosition::LowerRight)
 }
 
-/// Returns one of the quartiles as stairs, from the first evaluation at which it is known.
+/// Returns a quartile (0 lower, 1 median, 2 upper) as a step function, from the first evaluation at which it is known.
 fn quartile(group: &OptimizerGroup, index: usize) -> Vec<(f64, f64)> {
     let numbered = (1..).zip(&group.best_so_far_mm);
     stairs(numbered.filter_map(|(n, quartiles)| Some((f64::from(n), quartiles.all()[index]?))))

@@ -1,4 +1,4 @@
-//! Convergence plot: values and best so far against evaluations; with several objectives the
+//! Convergence plot: value and best value so far against the number of evaluations; with several objectives the
 //! hypervolume.
 
 use super::ReportError;
@@ -13,8 +13,8 @@ use maud::Markup;
 use plotters::prelude::*;
 use study::{Recorded, StudyRecord, volume};
 
-/// Plots the value of each evaluation and the best so far (with several objectives the hypervolume)
-/// against the number of evaluations; `size` pixels.
+/// Plots the value of each evaluation and the best so far (with several objectives the hypervolume) against the index
+/// of the evaluation; `size` is width and height, pixels.
 pub fn svg(record: &StudyRecord, size: (u32, u32)) -> Result<String, ReportError> {
     render("the convergence", size, |area| draw(area, record))
 }
@@ -39,8 +39,8 @@ pub(super) fn section(record: &StudyRecord, size: (u32, u32)) -> Result<Markup, 
     Ok(figure(&svg(record, size)?, "best value against evaluations", &caption))
 }
 
-/// Returns `(evaluation, value)`: the best feasible value after each evaluation, from the first
-/// feasible one on; with several objectives the hypervolume.
+/// Returns index of the evaluation and best feasible value so far, from the first feasible evaluation on; with several
+/// objectives the hypervolume.
 pub(super) fn best_so_far(record: &StudyRecord) -> Vec<(f64, f64)> {
     let goals = record.config.goals();
     let Some(measure) = goals.objectives.single() else {

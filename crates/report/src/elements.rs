@@ -33,7 +33,7 @@ pub(super) fn styled(title: &str, style: &str, body: Markup) -> String {
     page.into_string()
 }
 
-/// Returns an SVG as a `data:` URL for an image element, in which its scripts do not run.
+/// Returns an SVG as a `data:` URL for an image element; scripts in such an SVG do not run.
 pub(super) fn data_url(svg: &str) -> String {
     let escapes = [('%', "%25"), ('#', "%23"), ('<', "%3C"), ('>', "%3E"), ('"', "%22")];
     let svg = escapes.iter().fold(svg.to_owned(), |svg, (sign, code)| svg.replace(*sign, code));

@@ -1,5 +1,5 @@
-//! The explorer of all designs: a surface of the model, a table, and the selected one or two designs. A
-//! script draws it; without scripts the table has the best designs.
+//! Explorer of all designs: the model as a surface over two parameters, a table, and details of one or two selected
+//! designs. A script draws it; without scripts there is a table of the best designs.
 
 use super::elements::table;
 use super::selection::{LISTED, selected};
@@ -93,12 +93,13 @@ fn ends(window: &Window) -> [String; 2] {
     [window.end_negative, window.end_positive].map(end)
 }
 
-/// Returns JSON for a script element, with `<` escaped, because `</` would end the element.
+/// Returns JSON for a script element, with `<` escaped, because `</script` would end the element.
 pub(super) fn embedded(data: &Value) -> String {
     data.to_string().replace('<', "\\u003c")
 }
 
-/// Returns the data of the explorer.
+/// Returns the data of the explorer as JSON: parameters, measure, evaluations as by [`row`], and, by evaluation, ranges
+/// measured on a robot (mm), bounds of designs whose race was lost, and firm ranges (mm).
 fn data(answer: &Answer, model: Option<&impl Fn(&[f64]) -> (f64, f64)>, dir: &Path) -> Value {
     let (record, config) = (answer.record, &answer.record.config);
     let measure = config.objective.first();
@@ -140,15 +141,17 @@ fn data(answer: &Answer, model: Option<&impl Fn(&[f64]) -> (f64, f64)>, dir: &Pa
     })
 }
 
-/// Returns the upper bound of the success rate in words; `None` if the design was not raced.
+/// Returns the upper bound of the success rate in words; `None` unless the evaluation was stopped early, because the
+/// design could no longer be the best (raced).
 fn bound(found: &Recorded) -> Option<String> {
     let tasks = found.tasks.iter().filter(|_| found.raced());
     let rates = tasks.filter_map(|task| task.success.as_ref()).map(|rate| success(rate)[0].clone());
     rates.reduce(|all, one| format!("{all}; {one}"))
 }
 
-/// Returns an evaluation as a list, which is shorter than an object: number, parameters, value, whether it is feasible
-/// (1 or 0), both ends (mm), the outcomes there (as indices of `outcomes`), largest force (N) and compliance (N/mm).
+/// Returns an evaluation as a list, which is shorter than an object: index, parameters, value, whether it is feasible
+/// (1 or 0), both ends (mm), the outcomes there (as indices of `outcomes`), largest force (N) and stiffness along y
+/// (N/mm).
 fn row(record: &StudyRecord, found: &Recorded, outcomes: &mut Vec<String>) -> Value {
     let parameters = record.config.space.parameters.iter();
     let window = found.on(0).map(|found| &found.window);

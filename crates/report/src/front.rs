@@ -12,15 +12,15 @@ use maud::{Markup, html};
 use plotters::prelude::*;
 use study::{Recorded, StudyRecord};
 
-/// Plots the first two objectives of all evaluations and the front, `size` pixels; `None` if there
-/// is only one objective or no evaluation has a value.
+/// Plots the first two objectives of all evaluations, and the front; `size` is width and height, pixels. `None` if
+/// there is only one objective or no evaluation has a value.
 pub fn svg(record: &StudyRecord, size: (u32, u32)) -> Result<Option<String>, ReportError> {
     let several = record.config.objective.single().is_none();
     let any = record.evaluations.iter().any(|recorded| recorded.score.is_some());
     (several && any).then(|| render("the front", size, |area| draw(area, record))).transpose()
 }
 
-/// Returns the plot, hypervolume and designs; `None` for a single objective.
+/// Returns plot, hypervolume and designs of the front; `None` for a single objective.
 pub(super) fn section(answer: &Answer, size: (u32, u32)) -> Result<Option<Markup>, ReportError> {
     let Some(front) = &answer.front else { return Ok(None) };
     let caption = "All evaluated designs by their first two objectives. Rings: the Pareto front.";

@@ -1,8 +1,8 @@
-//! Terms of the first screen, explained on hover and touch in the words of the guide.
+//! Terms of the first screen of the page, explained on hover and touch in the words of the guide.
 
 use maud::{Markup, html};
 
-/// Terms, each with its explanation, which `docs/guide/start.md` contains.
+/// Terms, each with its explanation, which is also a passage of `docs/guide/start.md`.
 pub(crate) const TERMS: [(&str, &str); 5] = [
     (
         "firm",
@@ -31,7 +31,7 @@ pub(super) fn explained(text: &str) -> Markup {
     }
 }
 
-/// Returns the position of a term in a text; parts of longer words do not count.
+/// Returns the position of a term in a text as a whole word.
 fn position(text: &str, term: &str) -> Option<usize> {
     let apart = |at: &usize| {
         let letter = |c: Option<char>| c.is_some_and(char::is_alphanumeric);

@@ -7,9 +7,10 @@ use super::{ReportError, text_table};
 use analysis::levers::{Lever, Levers, difference_mm, is_relevant, thousandths};
 use plotters::prelude::Color;
 
-/// Bar of the diagram, from the present range to the ranges at both ends of a lever.
+/// Bars of a row of the diagram: from the current range to the ranges at both ends of a lever.
 struct Bar<'a> {
     name: &'a str,
+    /// Difference between the largest and the smallest range.
     span_mm: f64,
     /// Range at each end, mm, and the label of the end.
     ends: [(f64, String); 2],
@@ -17,7 +18,7 @@ struct Bar<'a> {
     lever: Option<&'a Lever>,
 }
 
-/// Returns the bars of the levers and of the infill, largest span first.
+/// Returns the rows of the levers and of the infill, largest span first.
 fn bars<'a>(levers: &'a Levers) -> Vec<Bar<'a>> {
     let bar = |lever: &'a Lever| {
         let end = |end: usize| {
@@ -71,10 +72,10 @@ const WIDTH: u32 = 356;
 const ROW: u32 = 50;
 const HEAD_AND_FOOT: u32 = 110;
 const LEFT: u32 = 8;
-/// Font size in plot units: 12 pixels on a phone.
+/// Font size in pixels of the plot; about 12 on a phone, which scales the plot down.
 const TEXT: u32 = 15;
 
-/// Draws the ranges at both ends of each lever as bars from the present range of the finger, largest
+/// Draws a tornado diagram: the ranges at both ends of each lever as bars from the current range of the finger, largest
 /// span first; the infill in another colour, negligible levers in grey.
 ///
 /// # Errors

@@ -1,5 +1,4 @@
-//! Plots and pages of a study and of the stiffness model: pure functions of the recorded results,
-//! without simulation or file access.
+//! Plots, tables, texts and pages of the recorded results: pure functions without simulation or file access.
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 #![deny(clippy::print_stdout, clippy::print_stderr)]
@@ -46,12 +45,12 @@ pub use page::{card, page};
 pub use page_files::{FilmPair, PageFiles, PostAnalysis};
 pub use text_table::text_table;
 
-/// Error of the drawing library.
+/// Error of the drawing library, or of the model whose curve is drawn.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("cannot draw {plot}: {problem}")]
 pub struct ReportError {
     /// Name of the plot.
     plot: &'static str,
-    /// The library's message.
+    /// Message of the library or of the model.
     problem: String,
 }

@@ -1,4 +1,4 @@
-//! Picture of a capture map.
+//! Plot of a capture map.
 
 use super::ReportError;
 use super::chart::{Area, DrawResult, HPos, VPos, axes, render, text_style};
@@ -24,6 +24,7 @@ const COLOURS: [(Outcome, Colour); 6] = [
 const SIZE: (u32, u32) = (356, 300);
 /// Height of a row of the title and of the legend, pixels.
 const ROW: i32 = 22;
+/// Left margin of title and legend, pixels.
 const LEFT: i32 = 14;
 
 /// Returns every outcome with its number in a map (0 inserted, 1 to 4 the failure class, -1 diverged), its label,
@@ -32,7 +33,7 @@ pub fn outcomes() -> [(i8, &'static str, String); 6] {
     COLOURS.map(|(outcome, colour)| (OutcomeCode(outcome).into(), outcome.label(), colour.hex()))
 }
 
-/// Draws the outcome of each cell, with a dot if it was simulated.
+/// Draws the outcome at each grid point as a coloured rectangle, with a dot if it was simulated.
 ///
 /// # Errors
 /// If the drawing library fails.
@@ -47,17 +48,17 @@ pub fn svg(map: &CaptureMap) -> Result<String, ReportError> {
     })
 }
 
-/// Text of title or legend with its colour and its left end, pixels.
+/// Text of title or legend with the colour of its outcome, if it is one, and its left end, pixels.
 type Entry = (String, Option<Colour>, i32);
 
-/// Arranges texts, each after `before` pixels, in rows that are no wider than the map.
+/// Arranges texts, each with `before` pixels for a mark to its left, in rows that are no wider than the map.
 fn wrapped(
     texts: impl IntoIterator<Item = (String, Option<Colour>)>,
     before: i32,
 ) -> Vec<Vec<Entry>> {
     let (mut rows, mut row, mut left) = (Vec::new(), Vec::new(), LEFT);
     for (text, colour) in texts {
-        // Wide enough for the usual fonts.
+        // 8 pixels per character are enough for the usual fonts.
         let width = before + 8 * text.chars().count() as i32;
         if left > LEFT && left + width > SIZE.0 as i32 {
             rows.push(std::mem::take(&mut row));
@@ -114,7 +115,7 @@ fn draw(area: &Area<'_>, map: &CaptureMap) -> DrawResult {
     for (at, row) in map.outcomes.iter().enumerate() {
         let y = second.value(at);
         let mut from = 0;
-        // Adjacent cells with equal outcomes become one rectangle.
+        // One rectangle for adjacent points with equal outcomes.
         for stretch in row.chunk_by(|a, b| a == b) {
             let to = from + stretch.len();
             let colour = COLOURS.into_iter().find(|(outcome, _)| *outcome == stretch[0].0);

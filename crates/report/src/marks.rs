@@ -39,12 +39,12 @@ impl PointMark {
     }
 }
 
-/// Series of marked points and its name.
+/// Series of points with its mark and its name in the legend.
 pub(super) type Series<'a> = (Vec<(f64, f64)>, PointMark, &'a str);
 
 /// Height of a line of a legend, width of a mark and of a letter, pixels.
 const LEGEND: [i32; 3] = [22, 26, 8];
-/// Left and right margin of a legend, pixels.
+/// Margin of a legend on either side and at the top, pixels.
 const MARGIN: i32 = 16;
 
 /// Draws a legend of series and of a line in the upper part of an area; returns the part below.
@@ -125,7 +125,7 @@ pub(super) fn bar(
     Ok(())
 }
 
-/// Writes words at a point, shifted by pixels.
+/// Writes a text at a point, shifted by `by`, pixels.
 pub(super) fn label(
     chart: &mut Chart<'_, '_>,
     at: (f64, f64),

@@ -1,5 +1,5 @@
-//! The first screen of a page: recommendation, evidence, films, window, drawing and files of the finger,
-//! and the next command.
+//! First screen of the page of a study: recommendation, evidence, animated trials (films), window, drawing and files of
+//! the finger, and the next command.
 
 use super::elements::{data_url, figure};
 use super::glossary::explained;
@@ -73,7 +73,7 @@ fn drawing_and_files(answer: &Answer, files: &PageFiles) -> Option<Markup> {
     })
 }
 
-/// Returns how the design that is nearest to inserting fails, and what to check.
+/// Returns the outcome of the design that is nearest to inserting, advice, and a drawing of its nominal start.
 fn nominal(nearest: &Recorded, fails: Option<Outcome>, files: &PageFiles) -> Markup {
     html! {
         div.whole {
@@ -96,7 +96,8 @@ fn nominal(nearest: &Recorded, fails: Option<Outcome>, files: &PageFiles) -> Mar
     }
 }
 
-/// Returns the end of the window that is shown first: a jam or a miss is more informative than a lost plug.
+/// Returns the name of the window end whose films are shown first: a jam or a miss is more informative than a lost
+/// plug.
 pub fn preferred(answer: &Answer) -> &'static str {
     let informative = |end: Option<Outcome>| {
         matches!(end, Some(Outcome::Failed(FailureClass::PlugMissed | FailureClass::Jammed)))
@@ -108,7 +109,7 @@ pub fn preferred(answer: &Answer) -> &'static str {
     if below { negative } else { positive }
 }
 
-/// Returns a player of the two trials at an end, and a button for each end.
+/// Returns a player for the two trials at an end of a window, with a button for each end.
 fn films(answer: &Answer, tasks: &[&Evaluation], files: &PageFiles) -> Markup {
     let films = &files.films;
     let (shown, linked): (Vec<&FilmPair>, Vec<&FilmPair>) =

@@ -1,4 +1,4 @@
-//! `report.html`: a self-contained page with a small inline script.
+//! `report.html`: a page without external files, with inline scripts.
 
 use super::elements::{definitions, document, figure};
 use super::page_files::{PageFiles, PostAnalysis};
@@ -34,7 +34,7 @@ pub fn page(answer: &Answer, model: &Model, files: &PageFiles) -> Result<String,
     Ok(document(&format!("{} with {method}, seed {}", config.task_name(), config.seed), body))
 }
 
-/// Returns the answer of the study in a folder as an HTML fragment, for notebooks.
+/// Returns the answer as an HTML fragment, for notebooks; `dir` is the study's folder.
 pub fn card(answer: &Answer, dir: &Path) -> String {
     let (command, why) = command::next(answer, dir);
     let card = html! {
@@ -50,7 +50,7 @@ pub fn card(answer: &Answer, dir: &Path) -> String {
 
 type Section = (&'static str, String, Markup);
 
-/// Returns id, title and body of each section that applies.
+/// Returns id, title and body of each section that is not empty.
 fn sections(
     answer: &Answer,
     model: &Model,

@@ -1,4 +1,4 @@
-//! Files shown or linked by the page of a study.
+//! Files and analyses that the page of a study shows or links.
 
 use super::replay;
 use crate::answer::RobotWindow;
@@ -6,7 +6,7 @@ use analysis::levers::Levers;
 use analysis::map::CaptureMap;
 use std::path::PathBuf;
 
-/// Largest total size of embedded films, bytes; further ones are linked.
+/// Largest total size of embedded films (recorded trials), bytes; films beyond it are linked.
 const FILMS: usize = 600_000;
 
 /// Files of a study's folder that its page shows or links.
@@ -14,7 +14,7 @@ const FILMS: usize = 600_000;
 pub struct PageFiles {
     /// The folder, as given to commands.
     pub dir: PathBuf,
-    /// Films in the folder, by end of a window.
+    /// Films in the folder, a pair for each task and end of its window.
     pub films: Vec<FilmPair>,
     /// Files of [`printer::FILES`](super::printer::FILES) that exist.
     pub files: Vec<&'static str>,
@@ -29,13 +29,13 @@ pub struct PageFiles {
 pub struct PostAnalysis {
     /// One-at-a-time sensitivity analysis.
     pub levers: Option<Levers>,
-    /// Outcomes over two errors of the start.
+    /// Capture maps: outcomes over two errors.
     pub maps: Vec<CaptureMap>,
-    /// Windows under the study's robot and under a different one, for a task of the user.
+    /// Windows with the study's robot and with a different one, for a task of the user.
     pub robots: Vec<RobotWindow>,
 }
 
-/// Films at an end of a window: of the last trial that inserts and of the first that fails.
+/// Pair of films at an end of a window: of the last trial that inserts and of the first that fails.
 #[derive(Debug, Clone)]
 pub struct FilmPair {
     /// Index of the task.
@@ -44,12 +44,12 @@ pub struct FilmPair {
     pub end: &'static str,
     /// The recordings as JSON without `<`; `None` if their page is linked instead.
     pub data: Option<String>,
-    /// SVG of the end of the failed trial.
+    /// SVG of the last instant of the failed trial, shown until the films are played.
     pub poster: Option<String>,
 }
 
 impl PageFiles {
-    /// Adds the films of a page, embedded unless the total size would be too large.
+    /// Adds the films of a replay page, embedded unless the total size would be too large.
     pub fn add(&mut self, task: usize, end: &'static str, page: &str, poster: Option<String>) {
         let embedded: usize = self.films.iter().flat_map(|film| &film.data).map(String::len).sum();
         let data = replay::data(page).filter(|data| embedded + data.len() <= FILMS);

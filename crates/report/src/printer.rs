@@ -6,13 +6,13 @@ use input::shipped::FINGERS;
 use insertion::finger::file::{FingerFile, infill};
 use study::StudyRecord;
 
-/// Surface of the recommended finger, in the folder of its study.
+/// Triangle mesh of the recommended finger with its ribs, in the folder of its study.
 pub const SURFACE: &str = "finger.stl";
-/// Surface in a format that contains its unit of length.
+/// The same mesh in a format that contains its unit of length.
 pub const THREE_MF: &str = "finger.3mf";
-/// Outline and solid base with settings of PrusaSlicer.
+/// Outline and solid base, from which PrusaSlicer makes the ribs as infill by the settings in the file.
 pub const PROJECT: &str = "finger-prusaslicer.3mf";
-/// Outline and solid base with settings of OrcaSlicer and Bambu Studio.
+/// The same with settings of OrcaSlicer and Bambu Studio.
 pub const ORCA_PROJECT: &str = "finger-orcaslicer.3mf";
 /// Sheet with instructions for printing the finger and checking the print.
 pub const SHEET: &str = "finger-sheet.html";
@@ -25,12 +25,12 @@ pub const FILES: [(&str, &str); 5] = [
     (SHEET, "print sheet"),
 ];
 
-/// Returns the finger file of a study, else the shipped one.
+/// Returns the finger file of a study, or the shipped one if the study has none.
 pub(super) fn finger_file(record: &StudyRecord) -> Option<FingerFile> {
     record.finger.clone().or_else(|| FingerFile::parse(FINGERS[0].text, FINGERS[0].file).ok())
 }
 
-/// Returns the recommended finger; `None` if there is none or it cannot be printed.
+/// Returns the geometry of the recommended finger; `None` if there is none or it cannot be built.
 pub fn recommended(answer: &Answer) -> Option<Geometry> {
     let design = answer.verdict.finger()?;
     let finger = finger_file(answer.record)?.with(design).ok()?;

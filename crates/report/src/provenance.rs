@@ -11,7 +11,7 @@ use maud::{Markup, html};
 use parameters::numbers::RCC_KEY;
 use study::{Provenance, Recorded, StudyRecord};
 
-/// Names of the lines about the recommended finger that other sections show.
+/// Names of lines that are omitted here, because other sections of the page show them.
 const ELSEWHERE: [&str; 9] = [
     "best design",
     "firm range",
@@ -24,7 +24,8 @@ const ELSEWHERE: [&str; 9] = [
     "  stiffest",
 ];
 
-/// Returns collapsed notes on reading the results and on their settings, and the command that reproduces them.
+/// Returns collapsed notes on the interpretation of the numbers, further numbers and settings, and the command that
+/// reproduces the study.
 pub(super) fn section(answer: &Answer, model: &Model) -> Markup {
     // With measurements `lines::recommended` already contains the lines of `lines::simulated`.
     let alone = answer.recommended.iter().filter(|_| answer.record.on_bench.is_none());
@@ -49,7 +50,7 @@ pub(super) fn section(answer: &Answer, model: &Model) -> Markup {
     }
 }
 
-/// Returns the limitations of the numbers.
+/// Returns notes on accuracy and validity of the numbers.
 fn reading(answer: &Answer, model: &Model) -> Vec<String> {
     let goals = answer.record.config.goals();
     let robust = goals.needs(Measure::RobustRange);
@@ -96,6 +97,7 @@ fn stiffness_note(model: &Model, robust: bool) -> String {
     format!("Stiffness is predicted from {}{ribs}; {accuracy}; {inclusion}.", model.counted())
 }
 
+/// Returns the table of the outcomes of all trials.
 pub(super) fn outcomes(record: &StudyRecord) -> Markup {
     let searches = || record.evaluations.iter().flat_map(Recorded::tasks);
     let count = |of: &dyn Fn(&Evaluation) -> u32| -> u64 {

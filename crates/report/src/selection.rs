@@ -2,13 +2,13 @@
 
 use study::{Recorded, StudyRecord};
 
-/// Largest numbers of evaluations listed in the explorer and marked in a plot: a page with 100 000
-/// of them would take 100 MB.
+/// Largest number of evaluations listed in the explorer, and of those marked in a plot; a page with 100 000 evaluations
+/// would have 100 MB.
 pub(super) const LISTED: usize = 5000;
 pub(super) const PLOTTED: usize = 1000;
 
-/// Selects about `most` of the evaluations `all`, in their order: all of them if there are no more,
-/// otherwise the best (a tenth of `most`), the recommended one and others at even intervals.
+/// Selects about `most` of the evaluations `all`, in their order: all if there are no more, otherwise the best (a tenth
+/// of `most`), the recommended one, and evaluations at even intervals.
 pub(super) fn selected<'a>(
     record: &StudyRecord,
     all: &'a [Recorded],
@@ -44,7 +44,7 @@ pub(super) fn note(record: &StudyRecord) -> Option<String> {
     })
 }
 
-/// Reduces a long line to the points at which its value changes.
+/// Reduces a line of more than [`PLOTTED`] points to its ends and the points at which its value changes.
 pub(super) fn change_points(points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
     if points.len() <= PLOTTED {
         return points;

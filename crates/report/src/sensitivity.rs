@@ -15,7 +15,7 @@ use serde::Serialize;
 pub struct SensitivityResult {
     /// Name of the task.
     pub task: String,
-    /// Name of the measure analysed.
+    /// Name of the measure whose variance is analysed.
     pub objective: String,
     /// Number of simulated windows.
     pub evaluations: usize,
@@ -23,11 +23,11 @@ pub struct SensitivityResult {
     pub diverged: usize,
     /// Number of windows whose nominal start fails; they count as 0.
     pub nominal_start_fails: usize,
-    /// The inputs by total index, largest first.
+    /// The inputs (factors), by total index, largest first.
     pub factors: Vec<Factor>,
 }
 
-/// An input and its Sobol indices, with their 95 % intervals.
+/// Input: path, bounds in its unit, and first-order and total Sobol index, each with its 95 % interval.
 #[derive(Debug, Clone, Serialize)]
 pub struct Factor {
     name: String,
@@ -90,7 +90,7 @@ pub fn text(found: &SensitivityResult) -> String {
     )
 }
 
-/// Returns a path without the prefix `task.strategy.phase.`, or as much of it as the path has.
+/// Removes the longest of `task.`, `task.strategy.` and `task.strategy.phase.` with which a path begins.
 fn short(key: &str) -> &str {
     let key = key.strip_prefix("task.").unwrap_or(key);
     key.strip_prefix("strategy.").map_or(key, |rest| rest.strip_prefix("phase.").unwrap_or(rest))
@@ -102,7 +102,7 @@ const ROW: u32 = 34;
 const HEAD_AND_FOOT: u32 = 110;
 const LEFT: u32 = 300;
 
-/// Draws a bar with its interval for each input, largest first.
+/// Draws the indices of each input as bars, largest total index first, with the interval of that index.
 pub fn svg(found: &SensitivityResult) -> Result<String, ReportError> {
     let height = HEAD_AND_FOOT + ROW * found.factors.len() as u32;
     render("the sensitivity", (WIDTH, height), |area| draw(area, found))

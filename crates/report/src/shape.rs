@@ -1,4 +1,4 @@
-//! Gain from the parameters of the finger beyond the infill.
+//! Gain from the parameters of the finger's shape, in addition to the infill.
 
 use super::printer::finger_file;
 use crate::answer::words::evaluated;
@@ -14,7 +14,7 @@ pub(super) fn section(record: &StudyRecord) -> Option<Markup> {
     let parameters = &record.config.space.parameters;
     let shape: Vec<&Variable> = parameters.iter().filter(|p| is_shape(&p.key)).collect();
     let index = record.recommended().filter(|_| !shape.is_empty())?.index;
-    // The unconfirmed evaluation, because the designs in the comparison were not confirmed.
+    // The evaluation of the search, because the designs in the comparison were not confirmed.
     let best = record.current().iter().find(|recorded| recorded.index == index)?;
     let file = finger_file(record)?;
     let of_file: Vec<(&str, f64)> = shape

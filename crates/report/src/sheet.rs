@@ -7,9 +7,9 @@ use insertion::task::Task;
 use insertion::trial::Probe;
 use maud::{Markup, html};
 
-/// Number of boxes in a row.
+/// Number of boxes to fill in per row.
 const BOXES: i32 = 12;
-/// Description of a successful insertion, then of each failure class.
+/// Description of a successful insertion, then of each failure class, for the user to classify attempts.
 const MEANINGS: [&str; 5] = [
     "seated, upright, held",
     "the plug slips out of the fingers before it is at the socket (drawn as that begins)",
@@ -18,7 +18,7 @@ const MEANINGS: [&str; 5] = [
     "the plug leaves the fingers, or slips in them, in search or push",
 ];
 
-/// Example of an outcome, simulated.
+/// Simulated example of an outcome.
 #[derive(Debug, Clone)]
 pub struct Picture {
     /// The outcome.
@@ -69,7 +69,7 @@ fn instructions(task: &Task, pictures: &[Picture]) -> Markup {
     }
 }
 
-/// Returns the instructions for the friction probe before the first insertion with a finger.
+/// Returns the instructions for the friction probe: the plug is pressed on a flat face and slides along it.
 fn probe() -> Markup {
     let Probe { force, stroke, speed, slides } = Probe::DEFAULT;
     let [stroke, speed] = [stroke, speed].map(|length| length / MM);

@@ -1,4 +1,4 @@
-//! Fit of the stiffness model as table, JSON and plot.
+//! Stiffness model of a finger and its leave-one-out errors as table, JSON and plot.
 
 use super::chart::{
     Area, DrawResult, HPos, PlotError, VPos, axes, legend, padded_range, render, text_style,
@@ -13,7 +13,7 @@ use insertion::surrogate::{Estimate, Model};
 use plotters::prelude::*;
 use serde_json::{Value, json};
 
-/// Returns the leave-one-out errors of every model on both axes, and the models that are used.
+/// Returns the leave-one-out errors of all candidate models in both directions, and the model chosen for each.
 pub fn table(model: &Model) -> String {
     let mut text = format!(
         "Stiffness of one finger, fitted to {}{}.\n\
@@ -53,12 +53,12 @@ pub fn table(model: &Model) -> String {
     text
 }
 
-/// Returns a number, or a dash if it is not finite.
+/// Formats a number with `places` decimals; a dash if it is not finite.
 fn decimals(value: f64, places: usize) -> String {
     if value.is_finite() { format!("{value:.places$}") } else { "-".to_owned() }
 }
 
-/// Returns the model used on each axis, and the leave-one-out errors of all, as JSON.
+/// Returns the model chosen for each direction, and the leave-one-out errors of all candidates, as JSON.
 pub fn json(model: &Model) -> Value {
     let errors = model.loo.iter().map(|row| {
         json!({
@@ -84,8 +84,8 @@ pub fn json(model: &Model) -> Value {
     })
 }
 
-/// Draws four panels: both axes of stiffness against direction and against density, curves with a band of
-/// one standard deviation, and the measured designs.
+/// Draws four panels: the stiffness along y and along z, each against infill direction and density, as curves with a
+/// band of one standard deviation, and the measured designs.
 pub fn svg(model: &Model) -> Result<String, ReportError> {
     render("the stiffness model", (1160, 880), |area| {
         let (head, body) = area.split_vertically(58);
@@ -109,7 +109,7 @@ const SAMPLES: u32 = 80;
 /// Colours of the curves.
 const SERIES: [Colour; 3] = [BLUE, ORANGE, GREEN];
 
-/// Draws the panel of one axis of stiffness against the direction or the density.
+/// Draws the stiffness along an axis against the infill direction or the infill density.
 fn draw(area: &Area<'_>, model: &Model, axis: Axis, by_direction: bool) -> DrawResult {
     // Converts (density, direction) to (value along x, value of the curve), or back.
     let swapped = |(density, direction): (f64, f64)| {
@@ -174,7 +174,7 @@ fn draw(area: &Area<'_>, model: &Model, axis: Axis, by_direction: bool) -> DrawR
     legend(&mut chart, corner)
 }
 
-/// Returns a mark in the colour of the nearest curve, filled if the design lies on it.
+/// Returns a mark in the colour of the nearest curve, filled if the measured design has the curve's value.
 fn mark(level: f64, curves: &[f64]) -> PointMark {
     let distances = curves.iter().map(|curve| (curve - level).abs()).zip(SERIES);
     let nearest = distances.min_by(|a, b| a.0.total_cmp(&b.0));

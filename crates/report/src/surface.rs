@@ -1,5 +1,5 @@
-//! Model of the first objective over the space for the report: a Gaussian process through the
-//! evaluations, like that of the optimizer `gp`.
+//! Model of the first objective over the space for the explorer: a Gaussian process fitted to the evaluations, like
+//! that of the optimizer `gp`.
 
 use crate::answer::words::{extent, rounded};
 use ask_tell::gp::{FitEffort, Gp, fit};
@@ -8,17 +8,17 @@ use insertion::space::Variable;
 use serde_json::{Value, json};
 use study::{Recorded, StudyRecord};
 
-/// Largest number of evaluations to which the model is fitted; of more evaluations, it uses every nth.
+/// Largest number of evaluations to which the model is fitted; of more, every n-th is used.
 const MAX_EVALUATIONS: usize = 300;
-/// Smallest standard deviation of a value, in its unit: rounding to 0.1.
+/// Smallest standard deviation of the noise of a value, in its unit: that of rounding to 0.1.
 const NOISE: f64 = 0.03;
-/// Largest number of cells along an axis of the surface.
+/// Largest number of points along an axis of the surface.
 const CELLS: u32 = 41;
 /// Number of steps along an axis over which its influence is determined.
 const LEVELS: u32 = 20;
 
-/// Fits the Gaussian process of a study, once per page: the mean and standard deviation at a point of the unit cube,
-/// in the unit of the value; `None` for too few evaluations or equal values.
+/// Fits the Gaussian process of a study. Returns the function from a point of the unit cube to mean and standard
+/// deviation, in the unit of the value; `None` for fewer than 5 evaluations or equal values.
 pub(super) fn model(record: &StudyRecord) -> Option<impl Fn(&[f64]) -> (f64, f64)> {
     let parameters = &record.config.space.parameters;
     let known = |recorded: &Recorded| {
@@ -44,8 +44,9 @@ pub(super) fn model(record: &StudyRecord) -> Option<impl Fn(&[f64]) -> (f64, f64
     })
 }
 
-/// Returns mean and standard deviation of the model, row by row, over the two most influential parameters; the others
-/// have their recommended values. `None` for a single parameter.
+/// Returns the model over the two most influential parameters as JSON: their indices (`axes`), grid values, and mean
+/// and standard deviation, row by row; the other parameters have their recommended values. `None` for a single
+/// parameter.
 pub(super) fn of(record: &StudyRecord, model: &impl Fn(&[f64]) -> (f64, f64)) -> Option<Value> {
     let parameters = &record.config.space.parameters;
     if parameters.len() < 2 {

@@ -24,7 +24,7 @@ fn finray9() -> PrintedFinger {
     PrintedFinger::parse(FINGERS[0].text, FINGERS[0].file).unwrap()
 }
 
-/// The shipped model, fitted once.
+/// Returns the stiffness model of the shipped measurements, fitted once.
 fn model() -> &'static Model {
     static MODEL: OnceLock<Model> = OnceLock::new();
     MODEL.get_or_init(|| {
@@ -48,13 +48,13 @@ fn html(study: &StudyRecord) -> String {
     page(&crate::answer::Answer::of(study), model(), &PageFiles::default()).unwrap()
 }
 
-/// A study of the closed-form rig over a coarse grid in a scattered order.
+/// Returns a study by the closed-form rig over a coarse grid of infills in scattered order.
 fn study() -> StudyRecord {
     let infill = |index: u64| [10.0 + (index * 13 % 21) as f64, (index * 29 % 41) as f64];
     record((0..60).map(|index| walked(index, infill(index))).collect())
 }
 
-/// An evaluation by the closed-form rig.
+/// Returns an evaluation by the closed-form rig, walked step by step.
 fn walked(index: u64, infill: [f64; 2]) -> Recorded {
     let stiffness = model().predict(infill).unwrap();
     let finger = Finger::new(stiffness.compliance.mean, stiffness.assembly.mean);
@@ -93,14 +93,14 @@ fn of_very_many_evaluations_the_best_and_some_are_drawn() {
     assert!(!html(&few).contains("evaluations.csv has all"));
 }
 
-/// An evaluation whose nominal start already ends so.
+/// Returns an evaluation in which every trial, the nominal start included, has the outcome `nominal`.
 fn at_nominal(index: u64, infill: [f64; 2], nominal: Outcome) -> Recorded {
     let ends = Altered(move |_: &Grasp, _: f64, trial: Trial| Trial { outcome: nominal, ..trial });
     let finger = Finger::new(2.0 * N_PER_MM, 40.0 * N_PER_MM);
     recorded(index, infill, evaluate(&ends, &finger, Search::Walk))
 }
 
-/// The page of a study, which is whole.
+/// Returns the page of a study after checking that it has its sections and loads nothing from elsewhere.
 fn whole(study: &StudyRecord) -> String {
     let page = html(study);
     for id in ["convergence", "failures", "provenance"] {
@@ -219,7 +219,7 @@ fn what_comes_from_files_is_escaped_and_unknown_tasks_are_told() {
     assert!(html.contains("&lt;img onerror") && !html.contains("published"));
 }
 
-/// Two objectives and a constraint on two tasks that measure the same.
+/// Two objectives and a constraint, on two tasks with the same evaluation.
 #[test]
 fn fronts_constraints_and_tasks_have_their_places_on_the_page() {
     let mut study = study();
@@ -300,7 +300,7 @@ fn other_spaces_have_a_page() {
     whole(&study);
 }
 
-/// Shipped inputs go by their names, the rest by their copies; nothing that decides is left out.
+/// Shipped inputs are given by name, others by their copies; every setting that affects the result is contained.
 #[test]
 fn the_command_that_repeats_a_study_names_all_that_decides() {
     let mut study = study();

@@ -8,6 +8,7 @@ pub(super) struct Colour {
     name: &'static str,
     /// For light pages and for plots in files.
     pub rgb: RGBColor,
+    /// For dark pages, `#RRGGBB`.
     dark: &'static str,
 }
 
@@ -28,8 +29,9 @@ colours! {
     ORANGE = "orange", (178, 78, 12), "#f0a060";
     GREEN = "green", (38, 132, 82), "#62c894";
     RED = "red", (190, 50, 44), "#f2837b";
-    // Outcomes, distinguishable for all readers: the lightness L* of the failures is at least 25 below that of
-    // insertion, and with deuteranopia (Machado et al. 2009) any two differ by a CIEDE2000 distance of at least 15.
+    // Outcomes (LOST_EARLY: contact lost before the search, LOST: in the insertion), distinguishable for all readers:
+    // the lightness L* of the failures is at least 25 below that of insertion, and with deuteranopia (Machado et al.
+    // 2009) any two differ by a CIEDE2000 distance of at least 15.
     INSERTED = "inserted", (206, 239, 210), "#CEEFD2";
     LOST_EARLY = "lost-early", (59, 41, 102), "#4B357F";
     MISSED = "missed", (63, 105, 213), "#3F69D5";

@@ -10,13 +10,13 @@ use study::Recorded;
 /// Number of designs listed; the explorer has all.
 const LISTED: usize = 8;
 
-/// Returns the section; `None` without a recommended design, as with several objectives.
+/// Returns the section; `None` if no finger is recommended, or for several objectives.
 pub(super) fn section(answer: &Answer) -> Option<Markup> {
     answer.verdict.finger()?;
     let found = answer.recommended.as_ref()?.ties.as_ref()?;
     let named = answer.design_to_print()?.index;
     let mut designs = found.designs.clone();
-    // The design to print first, then the safe choice and the others with a reason, each by increasing loss.
+    // Order: design to print, safe choice, designs with another reason, all others; within each group by loss.
     let safe = found.safe.as_ref().map(|safe| safe.design.index);
     let order = |recorded: &Recorded| match recorded.index {
         index if index == named => 0,

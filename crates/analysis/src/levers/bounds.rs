@@ -13,7 +13,7 @@ use parameters::numbers::{CLEARANCE, Kind};
 use parameters::plan::one_at_a_time::{End, farthest};
 use parameters::{Parameter, Path, Transform};
 
-/// Parameters of `priors/bench.toml` that a user can change; the others belong to fingers and pads.
+/// Names of the parameters of `priors/bench.toml` that a user can change; the others belong to fingers and pads.
 const OF_BENCH: [&str; 5] = [
     "friction plug-socket",
     "preload",
@@ -21,17 +21,18 @@ const OF_BENCH: [&str; 5] = [
     "clearance",
     "stiffness of the flange",
 ];
-/// Parameters of `priors/levers.toml` that are listed after all others.
+/// Names of the parameters of `priors/levers.toml` that come last, and are the first to be left out at the limit on
+/// windows.
 const LAST: [&str; 2] = ["stroke to the front", "stroke to the back"];
 
-/// Parameter of a lever, with the current value of the number that it sets, in that number's unit.
+/// Parameter of a lever, with its current value in the unit of its path.
 pub struct LeverParameter {
     pub parameter: Parameter,
     pub value: f64,
 }
 
-/// Returns the parameters of the levers that apply to the task, finger and robot. Bounds of the space take precedence
-/// for the keys that it has.
+/// Returns the parameters of the levers that task, finger and robot have. Bounds of the space take precedence over
+/// those of the shipped files.
 pub fn lever_parameters(
     analysis: &LeverAnalysis<'_>,
     specimen: &Specimen,
@@ -53,7 +54,7 @@ pub fn lever_parameters(
     Ok(first.into_iter().chain(bench).chain(last).filter_map(with_value).collect())
 }
 
-/// Returns the current value of the number that a lever sets; `None` if it does not exist here.
+/// Returns the current value of the parameter with a path; `None` if task, finger and robot do not have it.
 fn current_value(analysis: &LeverAnalysis<'_>, specimen: &Specimen, path: &Path) -> Option<f64> {
     let LeverAnalysis { evaluator, template, design, .. } = analysis;
     match path.kind() {
@@ -69,7 +70,8 @@ fn current_value(analysis: &LeverAnalysis<'_>, specimen: &Specimen, path: &Path)
     }
 }
 
-/// Returns the clearance: width of the opening minus that of the plug, the smaller of x and y, m.
+/// Returns the clearance, m: width of the opening minus that of the plug at the depth of success, the smaller of x and
+/// y.
 fn clearance(task: &Task) -> f64 {
     let plug = section(&ConvexBody::plug(&task.plug), task.success.depth);
     let free = |axis: usize| width(task.opening[axis]) - width(plug[axis]);
@@ -77,11 +79,12 @@ fn clearance(task: &Task) -> f64 {
 }
 
 impl LeverParameter {
-    /// Returns the number and the specimen at a bound, or at the feasible value nearest to it.
+    /// Returns value and specimen at a bound, or at the feasible value nearest to it.
     pub fn at(&self, analysis: &LeverAnalysis<'_>, end: End) -> Option<(f64, Specimen)> {
         let LeverAnalysis { evaluator, template, design, given, .. } = analysis;
         let changed = |to: f64| {
             let value = self.parameter.applied(self.value, to);
+            // A negative clearance (interference) is infeasible unless the task has it already.
             if self.parameter.path == CLEARANCE && value < self.value.min(0.0) {
                 return None;
             }

@@ -5,7 +5,7 @@ use insertion::evaluation::INDIFFERENCE_MM;
 use insertion::space::{Design, Space, is_of_task};
 use serde::{Deserialize, Serialize};
 
-/// Effect of the levers on the range of one finger on one task. Ranges are around a taught start.
+/// Effect of the levers on the range of one finger on one task. The start is taught anew before each range is measured.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Levers {
     /// Name of the task.
@@ -19,13 +19,13 @@ pub struct Levers {
     pub infill: [f64; 2],
     /// The levers, by decreasing effect on the range.
     pub levers: Vec<Lever>,
-    /// Names of the levers that exceeded the window budget.
+    /// Names of the levers that were not measured, since the limit on windows was reached.
     pub left_out: Vec<String>,
     /// Number of windows measured.
     pub windows: usize,
 }
 
-/// Baseline: a finger with all numbers unchanged.
+/// Baseline: the finger with all levers at their current values.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Base {
     /// Its range, mm; 0 where no start inserts.
@@ -34,20 +34,20 @@ pub struct Base {
     pub taught_start_mm: f64,
 }
 
-/// Number that a user can change, in its unit.
+/// Parameter that a user can change, with its bounds and the ranges there.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Lever {
     /// Name in words: `tilt`.
     pub name: String,
-    /// Number that it sets: a path in the task or finger file, or a name as in `priors/bench.toml`.
+    /// Path of the parameter, as `sets` in `priors/levers.toml` and `priors/bench.toml`.
     pub key: String,
     /// Unit of `value`, `low` and `high`; empty for none.
     pub unit: String,
     /// Current value.
     pub value: f64,
-    /// Value tried at the lower bound; for a negative stroke, the shorter one.
+    /// Value at the lower bound; larger than `high` if the bounds are factors on a negative stroke.
     pub low: f64,
-    /// Value tried at the upper bound.
+    /// Value at the upper bound.
     pub high: f64,
     /// Source of the bounds.
     pub source: String,
@@ -70,8 +70,8 @@ impl Lever {
         format!("{}{space}{}", thousandths(value), self.unit)
     }
 
-    /// Describes the step from the current value to an end: `5° more tilt`; an end by its value if the ends differ in
-    /// sign, where both could be more: `-5° of tilt`.
+    /// Describes the change from the current value to an end, 0 or 1: `5° more tilt`; if the ends differ in sign, so
+    /// that both may be larger in magnitude, the value: `-5° of tilt`.
     fn step(&self, end: usize) -> String {
         let to = [self.low, self.high][end];
         if self.low < 0.0 && self.high > 0.0 {
@@ -84,8 +84,8 @@ impl Lever {
 }
 
 impl Levers {
-    /// Returns whether the shipped space `codesign` varies a lever, the task has all of its numbers, and the design does
-    /// not vary them already.
+    /// Returns whether the shipped space `codesign` varies a lever, the task has all parameters of that space, and the
+    /// design does not set any of them already.
     fn is_in_codesign(&self, lever: &Lever) -> bool {
         let codesign = SPACES.iter().find(|space| space.name == "codesign");
         let codesign = codesign.and_then(|space| Space::parse(space.text, space.file).ok());
@@ -105,7 +105,7 @@ impl Levers {
         };
         let of = |lever| [0, 1].map(|end| (by(lever, end), lever, end));
         let ends = || self.levers.iter().flat_map(of);
-        // The first of equals wins.
+        // The first of equal effects.
         let most = |sign: f64| {
             let best = ends().reduce(|a, b| if sign * b.0 > sign * a.0 { b } else { a });
             best.filter(|(by, ..)| is_relevant(sign * by))

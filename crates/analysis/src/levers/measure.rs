@@ -1,4 +1,4 @@
-//! Measurement of the windows of a finger and of its levers.
+//! Measurement of the windows of a finger at the current value and at both ends of each lever.
 
 use super::bounds::{LeverParameter, lever_parameters};
 use super::lever::{Base, Lever, Levers};
@@ -15,34 +15,33 @@ use parameters::plan::one_at_a_time::End;
 use rayon::prelude::*;
 use std::sync::atomic::AtomicBool;
 
-/// Largest number of windows measured.
+/// Largest number of windows measured; levers beyond it are left out.
 const MOST_WINDOWS: usize = 20;
 
 /// Inputs of the lever analysis of a finger on a task.
 pub struct LeverAnalysis<'a> {
     /// Evaluator for the windows.
     pub evaluator: &'a Evaluator,
-    /// The task; one of the evaluator's.
+    /// Task, one of `evaluator.templates`.
     pub template: &'a Template,
-    /// The space. Its bounds take precedence for the keys that it has.
+    /// Search space, whose bounds take precedence over those of the shipped files.
     pub space: &'a Space,
     /// Design of the finger.
     pub design: &'a Design,
-    /// Given stiffness of the finger; predicted if `None`.
+    /// Stiffness of the finger; `None` to predict it from the design.
     pub given: Option<Prediction>,
 }
 
-/// Lever to be measured, and the index of the window of each end. An end that changes nothing has the index of the
+/// Lever to be measured, and the index of the specimen of each end; an end that changes nothing has index 0, the
 /// baseline.
 type Candidate = (Lever, [usize; 2]);
 
 impl LeverAnalysis<'_> {
-    /// Measures the levers, on the threads of the current pool. `infill` is the smallest and the
-    /// largest range over infills, mm; if it is not known, the softest and the stiffest infill are
-    /// measured. The result is invalid once `stop` is set.
+    /// Measures the levers on the current thread pool. `infill` is the smallest and the largest range over infills, mm;
+    /// if it is not known, the softest and the stiffest infill are measured. The result is invalid once `stop` is set.
     ///
     /// # Errors
-    /// If the finger cannot be simulated as it is.
+    /// If the finger at the current values, or with the softest or stiffest infill, cannot be simulated.
     pub fn levers(
         &self,
         infill: Option<[f64; 2]>,
@@ -84,8 +83,8 @@ impl LeverAnalysis<'_> {
         })
     }
 
-    /// Returns the levers to measure and the names of those that exceed the window budget. The
-    /// specimens of their ends are appended to `specimens`, the first of which is the baseline.
+    /// Returns the levers to measure and the names of those that exceed [`MOST_WINDOWS`]. The specimens of their ends
+    /// are appended to `specimens`, the first of which is the baseline.
     fn candidates(
         &self,
         specimens: &mut Vec<Specimen>,
@@ -95,7 +94,7 @@ impl LeverAnalysis<'_> {
         for lever in lever_parameters(self, &base)? {
             let (mut more, mut values, mut windows) = (Vec::new(), [lever.value; 2], [0; 2]);
             for (end, bound) in [End::Low, End::High].into_iter().enumerate() {
-                // A chamfer of 0 describes the same shape differently, which can shift a window.
+                // A chamfer of 0 makes a different specimen of the same shape, whose window can differ.
                 let changed = lever.at(self, bound).filter(|(value, _)| *value != lever.value);
                 let Some((value, specimen)) = changed else { continue };
                 if specimen != base {
@@ -149,7 +148,7 @@ fn range_mm(evaluation: &Evaluation) -> Option<f64> {
 }
 
 impl LeverParameter {
-    /// Returns the lever with these end values, without the ranges there.
+    /// Returns the lever with these values at its ends, before the ranges there are measured.
     fn unmeasured(self, values: [f64; 2]) -> Lever {
         let LeverParameter { parameter, value } = self;
         // To 9 decimals, without floating-point noise.

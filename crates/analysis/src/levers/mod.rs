@@ -1,8 +1,7 @@
-//! Levers: numbers other than the infill that a user can change, and their effect on a finger's
-//! range.
+//! Levers: parameters other than the infill that a user can change, and their effect on a finger's range.
 //!
-//! One-at-a-time sensitivity analysis: each number is set to both ends of its interval, with the
-//! start taught again each time.
+//! One-at-a-time sensitivity analysis: each parameter is set to both ends of its interval, with the start taught again
+//! each time.
 
 mod bounds;
 mod lever;

@@ -40,8 +40,8 @@ fn the_sentence_names_the_most_effective_lever_and_ignores_small_effects() {
     }
 }
 
-/// `codesign` is suggested only if it varies the best lever, the task has all of its numbers, and the design changes
-/// none of them.
+/// The space `codesign` is suggested only if it varies the best lever, the task has all of its parameters, and the
+/// design sets none of them.
 #[test]
 fn the_sentence_suggests_the_space_that_varies_the_levers_together() {
     let without_effect = |key: &str| lever(key, [0.0, 5.0, 10.0], [Some(4.0); 2]);

@@ -1,5 +1,5 @@
-//! Capture map (also: capture range, region of attraction): outcomes of insertions over two start
-//! errors at once. A tolerance window covers only one.
+//! Capture map (also: capture range, region of attraction): outcomes of insertions over two position or angle errors at
+//! once. A tolerance window covers only one.
 
 mod plane;
 
@@ -11,12 +11,12 @@ use parameters::plan::grid::{self, Node, TracedMap};
 use plane::{LIMIT, value};
 use serde::{Deserialize, Serialize};
 
-/// Outcomes over two start errors, on a grid. Its JSON round-trips exactly.
+/// Outcomes over two errors, on a grid. Its JSON round-trips exactly.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CaptureMap {
     /// Name of the task.
     pub task: String,
-    /// The finger's design; empty if it was given by its springs.
+    /// The finger's design; empty if the finger was given by its stiffness.
     pub design: Design,
     /// Shift of the start along y, then the other error.
     pub axes: [MapAxis; 2],
@@ -26,19 +26,19 @@ pub struct CaptureMap {
     pub simulated: Vec<Vec<bool>>,
     /// Number of simulated trials.
     pub trials: usize,
-    /// Resolution along either axis at which the border of the inserting region was traced, in the
-    /// axis's unit: the step of the grid unless the trials ran out.
+    /// Resolution at which the border of the inserting region was traced, mm or degrees: the step of the grid, or more
+    /// if the limit on trials was reached.
     pub traced_step: f64,
-    /// Area of the inserting region in the product of the axes' units.
+    /// Area of the inserting region, in `area_unit`.
     pub area: f64,
     /// Unit of `area`: `mm2` or `mm deg`.
     pub area_unit: String,
 }
 
-/// Axis of a map: a start error and its values on the grid.
+/// Axis of a map: an error and its values on the grid.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MapAxis {
-    /// `y`, `x`, `yaw` or `tilt`.
+    /// Name of the error (see [`Axes`]): `y`, `x`, `yaw` or `tilt`.
     pub name: String,
     /// `mm` or `deg`.
     pub unit: String,
@@ -51,7 +51,7 @@ pub struct MapAxis {
 }
 
 impl CaptureMap {
-    /// Traces the map of a finger on its task: at most 300 trials.
+    /// Traces the map of a finger on a task with at most 300 trials.
     pub fn trace(task: &str, design: Design, plane: &Plane<'_>) -> Self {
         let TracedMap { low, high, nodes, trials, step, .. } =
             grid::trace(LIMIT, &|node| plane.outcome(node));
@@ -81,7 +81,7 @@ impl CaptureMap {
         )
     }
 
-    /// Returns the smallest and largest value of axis 0 or 1 at which any trial inserts, in the axis's unit.
+    /// Returns the smallest and largest value of axis 0 or 1, in its unit, at which any grid point inserts.
     pub fn ends(&self, axis: usize) -> Option<[f64; 2]> {
         let row = |row: &Vec<OutcomeCode>| row.iter().any(|mark| mark.0 == Outcome::Inserted);
         let column = |at: usize| self.outcomes.iter().any(|row| row[at].0 == Outcome::Inserted);
@@ -93,8 +93,8 @@ impl CaptureMap {
         Some(ends.map(|at| self.axes[axis].value(at)))
     }
 
-    /// Returns the interval along y around zero in which the trials without a second error insert, mm; `None` if the
-    /// trial without any error fails.
+    /// Returns the interval of shifts along y around zero, mm, that insert without a second error; `None` if the point
+    /// without any error does not insert.
     pub fn window_mm(&self) -> Option<[f64; 2]> {
         let [zero, other] =
             self.axes.each_ref().map(|axis| (-axis.low / axis.step).round() as usize);
@@ -161,7 +161,7 @@ mod tests {
     use insertion::trial::{Conditions, Grasp};
     use parameters::plan::grid::STEPS_PER_UNIT;
 
-    /// A millimetre and a degree take 1 mm off both ends of the closed form's window.
+    /// In the closed-form rig a second error of 1 mm or 1° shortens the window by 1 mm at both ends.
     #[test]
     fn the_map_of_the_closed_form_is_the_same_on_any_number_of_threads_and_after_its_json() {
         let (rig, finger) = (FakeRig::default(), Finger::new(3.0 * N_PER_MM, 20.0 * N_PER_MM));

@@ -1,4 +1,4 @@
-//! Trials of a finger under two errors of the start.
+//! Trials of a finger under a shift of the start along y and a second error.
 
 use clap::ValueEnum;
 use input::units::MM;
@@ -9,7 +9,7 @@ use parameters::numbers::{SOCKET_YAW, START_ACROSS, START_TILT};
 use parameters::plan::grid::{Node, STEPS_PER_UNIT};
 use std::sync::OnceLock;
 
-/// Largest extent of a map along both axes, in grid steps: 16 mm, and 8 mm or degrees.
+/// Largest errors of a map in either direction, in grid steps: 16 mm along y, and 8 mm or degrees.
 pub(super) const LIMIT: Node = [16 * STEPS_PER_UNIT, 8 * STEPS_PER_UNIT];
 
 /// Pair of errors of a map: a shift of the start along y, and a second error.
@@ -28,7 +28,7 @@ pub enum Axes {
 }
 
 impl Axes {
-    /// Returns the name and unit of the second error, and the path of its number.
+    /// Returns the name and unit of the second error, and the path of the parameter that sets it.
     pub(super) fn second(self) -> ([&'static str; 2], &'static str) {
         match self {
             Axes::YX => (["x", "mm"], START_ACROSS),
@@ -38,7 +38,8 @@ impl Axes {
     }
 }
 
-/// Trials of a finger under two errors of the start. The part is grasped once for each value of the second error.
+/// Plane of the two errors of a map, at whose points trials are simulated. The part is grasped once for each value of
+/// the second error.
 pub struct Plane<'a> {
     rig: &'a dyn Rig,
     grasp: Grasp<'a>,
@@ -48,7 +49,7 @@ pub struct Plane<'a> {
 }
 
 impl<'a> Plane<'a> {
-    /// Creates the plane for a grasp; the conditions of the grasp are replaced.
+    /// Creates the plane for a grasp; its conditions are replaced by those with the second error.
     pub fn new(rig: &'a dyn Rig, grasp: Grasp<'a>, axes: Axes) -> Self {
         let grasped = (-LIMIT[1]..=LIMIT[1]).map(|_| OnceLock::new()).collect();
         Plane { rig, grasp, axes, grasped }

@@ -10,7 +10,8 @@ use insertion::trial::engine::EngineKind;
 use std::path::Path;
 use study::{CELL, FINGER, Provenance, StudyRecord, input_path, sha256_hex};
 
-/// Inputs of a study as command arguments: shipped ones by name, others by their copies in `dir`.
+/// Inputs of a study as command arguments: shipped ones by name, others by their copies in `dir`. The role of an input
+/// is its key in the provenance: `task_1`, `robot`.
 struct InputArguments<'a> {
     record: &'a StudyRecord,
     dir: &'a Path,
@@ -52,7 +53,7 @@ const PRINTS: usize = 3;
 pub fn next(answer: &Answer, dir: &Path) -> (String, &'static str) {
     let inputs = InputArguments { record: answer.record, dir };
     let several = answer.record.config.several_tasks();
-    // Measurements belong to the user's file, not to its copy.
+    // Measurements refer to the name of the user's file, not to that of its copy.
     let task = inputs.own_file(0).cloned().unwrap_or_else(|| inputs.input("task_1", TASKS));
     match (&answer.verdict, &answer.trust) {
         (Verdict::NothingInserts { place, .. }, _) => repair(answer.record, dir, *place),
@@ -88,8 +89,8 @@ pub fn next(answer: &Answer, dir: &Path) -> (String, &'static str) {
     }
 }
 
-/// Returns the command for a task whose nominal start fails, and its purpose; `place` is the index
-/// of the task. A user's own file is tuned in place.
+/// Returns the command for the task with index `place`, whose nominal start fails, and the command's purpose. It
+/// changes a user's own file, but writes a new one for a task given as text.
 pub fn repair(record: &StudyRecord, dir: &Path, place: usize) -> (String, &'static str) {
     let (inputs, role) = (InputArguments { record, dir }, format!("task_{}", place + 1));
     if let Some(shipped) = inputs.shipped(&role, TASKS) {
@@ -121,7 +122,7 @@ pub fn rerun(record: &StudyRecord) -> Vec<String> {
         words.push(format!("--uncertainty {}", inputs.input("uncertainty", UNCERTAINTIES)));
     }
     let aggregate = config.aggregate.iter().map(|of| format!("--aggregate {of}"));
-    // Weights follow the word in the configuration, and have their own option.
+    // The configuration has the weights after `weighted`; on the command line they are an option.
     words.extend(aggregate.map(|of| of.replace("weighted ", "weighted --weights ")));
     if config.indifference_mm != INDIFFERENCE_MM {
         words.push(format!("--indifference-mm {}", config.indifference_mm));
@@ -134,8 +135,8 @@ pub fn rerun(record: &StudyRecord) -> Vec<String> {
     words
 }
 
-/// Returns the command of a trial of the first task, without the design and the offset; `dir` is
-/// the study's folder.
+/// Returns the command for a trial of the first task, to which design and offset are appended; `dir` is the study's
+/// folder.
 pub fn trial(record: &StudyRecord, dir: &Path) -> String {
     let inputs = InputArguments { record, dir };
     let mut words =

@@ -5,14 +5,14 @@ use insertion::evaluation::objective::Measure;
 use serde::Serialize;
 use study::{STOP_SHARE, StudyRecord};
 
-/// Contact force above the limit of a connector, or above the acceptable share of the stop force of the robot.
+/// Contact force above the limit of a connector, or above the acceptable share of the force at which the robot stops.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ExcessForce {
     /// Task on which it occurs.
     pub task: String,
     /// Largest contact force in the trials that insert, N.
     pub peak_force_n: f64,
-    /// Limit, N: that of the connector, or the stop force of the robot.
+    /// Limit, N: that of the connector, or the force at which the robot stops.
     pub limit_n: f64,
     /// Whether the limit is that of the connector.
     pub of_connector: bool,

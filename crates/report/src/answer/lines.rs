@@ -20,7 +20,7 @@ fn line(name: &str, text: impl Into<String>) -> Line {
     (name.to_owned(), text.into())
 }
 
-/// Returns the short form of the answer, which follows headline and expectation.
+/// Returns the short form of the answer: the lines below its headline and the expected performance.
 pub fn brief(answer: &Answer) -> Vec<Line> {
     let record = answer.record;
     let mut lines: Vec<Line> = record.on_bench.iter().flat_map(on_bench).collect();
@@ -43,14 +43,15 @@ pub fn brief(answer: &Answer) -> Vec<Line> {
     lines
 }
 
-/// Returns the design that is recommended by simulation alone.
+/// Returns the recommended design; `None` if measurements were used, for a Pareto front, or without a finger to print.
 fn simulated_finger<'a, 'b>(answer: &'b Answer<'a>) -> Option<&'b Recommended<'a>> {
     let alone = answer.front.is_none() && answer.record.on_bench.is_none();
     let named = answer.verdict.finger().is_some();
     answer.recommended.as_ref().filter(|_| alone && named)
 }
 
-/// Returns the ends of the windows of a recommended design, its constraints and its ties.
+/// Returns the outcomes at the ends of the windows of a recommended design, its success rates, constraints, ties and
+/// the safe choice, and the design that was widest in the search.
 pub fn simulated(answer: &Answer, found: &Recommended) -> Vec<Line> {
     let config = &answer.record.config;
     let of_task = |task: &OnTask| {
@@ -69,8 +70,8 @@ pub fn simulated(answer: &Answer, found: &Recommended) -> Vec<Line> {
     found.tasks.iter().flat_map(of_task).chain(limits).chain(why).chain(tied).chain(safe).collect()
 }
 
-/// Returns the best design of the search with its value in the repeats, if it was repeated and another design is
-/// recommended.
+/// Returns the best design of the search with its value in the repeats (with varied friction, start and time step), if
+/// it was repeated and another design is recommended.
 pub fn widest(answer: &Answer) -> Option<Line> {
     let found = answer.recommended.as_ref()?;
     let (measure, _) = found.objective.filter(|(measure, _)| measure.unit() == "mm")?;
@@ -94,7 +95,7 @@ fn members(record: &StudyRecord, front: &Front) -> Vec<Line> {
     front.designs.iter().take(MEMBERS).map(member).chain(more).collect()
 }
 
-/// Number of designs of a front that are printed.
+/// Largest number of designs of a front that are listed.
 const MEMBERS: usize = 4;
 
 /// Returns advice on the start and warnings to read before the finger is printed.
@@ -111,7 +112,7 @@ pub fn caveats(answer: &Answer) -> Vec<Line> {
     advice.into_iter().chain(extrapolated).chain(warnings).collect()
 }
 
-/// Returns a contact force that the connector or the robot does not withstand, with a remedy.
+/// Returns a contact force above the limit of connector or robot, with a remedy.
 pub fn force(answer: &Answer) -> Option<Line> {
     let excess = answer.force.as_ref()?;
     let ties = answer.recommended.as_ref().and_then(|found| found.ties.as_ref());
@@ -120,7 +121,7 @@ pub fn force(answer: &Answer) -> Option<Line> {
     });
     let remedy = match safe {
         Some(safe) => format!("take the safe choice, {}", words::design(&safe.design.design)),
-        // A study that predicts a robot takes no constraints.
+        // Studies with measurements do not support constraints.
         None if answer.record.on_bench.is_some() => {
             format!("try optimize task tune FILE --max-force-n {:.0}", acceptable(answer))
         }
@@ -129,7 +130,7 @@ pub fn force(answer: &Answer) -> Option<Line> {
     Some(line("force", format!("{}; {remedy}", excess.words(&answer.record.config.robot))))
 }
 
-/// Returns the largest force that all connectors and the robot withstand, N.
+/// Returns the largest force that is acceptable for all connectors and the robot, rounded down, N.
 fn acceptable(answer: &Answer) -> f64 {
     let limits = &answer.record.limits;
     let each = (0..answer.record.config.tasks.len()).map(|task| limits.acceptable(task));
@@ -164,10 +165,10 @@ pub fn tied(answer: &Answer, ties: &Ties) -> Line {
     line("ties", format!("{count} of {of} designs{within}: {}", spread.join(", ")))
 }
 
-/// Number of parameters whose spread is printed.
+/// Largest number of parameters whose values are listed.
 const SPREADS: usize = 4;
 
-/// Returns the safe choice and the reason for it; `None` if nothing distinguishes a design.
+/// Returns the safe choice and the reason for it, if there is one.
 pub fn safe(ties: &Ties) -> Option<Line> {
     let safe = ties.safe.as_ref()?;
     let why = match (safe.measured_mm, safe.force_n) {
@@ -179,7 +180,7 @@ pub fn safe(ties: &Ties) -> Option<Line> {
     Some(line("safe choice", format!("{}: {why}{loss}", words::design(&safe.design.design))))
 }
 
-/// Returns the interval of the range over the designs that insert, and the number of the others.
+/// Returns the smallest and largest range of the designs that insert, and the number of the others.
 pub fn spread(answer: &Answer) -> Option<Line> {
     let (spread, of) = (interval(answer.spread_mm?), answer.designs);
     let failing = answer.record.current().iter().filter(|design| !design.inserts_on_all()).count();
@@ -262,7 +263,8 @@ pub fn recommended(answer: &Answer, found: &Recommended) -> Vec<Line> {
     lines
 }
 
-/// Returns the number of designs that the race stopped early.
+/// Returns the number of designs whose success rate was estimated from fewer draws, because it could no longer exceed
+/// the best (racing).
 fn raced(answer: &Answer) -> Option<Line> {
     let raced = || answer.record.current().iter().filter(|recorded| recorded.raced());
     let rates = raced().flat_map(|recorded| &recorded.tasks).flat_map(|task| &task.success);
@@ -275,7 +277,7 @@ fn raced(answer: &Answer) -> Option<Line> {
     })
 }
 
-/// Returns the rank correlation of simulated and measured ranges.
+/// Returns the rank correlation of simulated and measured ranges on a task.
 fn robot((task, found): &(&str, RankCorrelation)) -> Line {
     // A random order of n fingers has a rank correlation of mean 0 and variance 1 / (n - 1), taken as
     // normal: it exceeds this bound in less than 5 % of cases.
@@ -360,7 +362,7 @@ pub fn by_ribs(found: &ByRibs) -> Vec<Line> {
     texts.into_iter().map(|text| line("from its ribs", text)).collect()
 }
 
-/// Returns range, window and taught start in one line.
+/// Returns range, window and taught start in words.
 fn tolerated(Evaluation { window, taught, .. }: &Evaluation) -> String {
     if window.nominal != Outcome::Inserted {
         return format!("none: its nominal start ends with {}", window.nominal.label());
@@ -371,7 +373,7 @@ fn tolerated(Evaluation { window, taught, .. }: &Evaluation) -> String {
     format!("{range} ({ends}{start})")
 }
 
-/// Returns the position of a taught start, mm; `None` if it was not taught.
+/// Returns the position of a taught start relative to that of the task file, `mm`; `None` if it was not taught.
 pub fn taught(mm: Option<f64>) -> Option<Line> {
     let mm = mm?;
     Some(line("start", format!("taught: {mm:+.1} mm from that of the task file")))

@@ -52,7 +52,7 @@ pub struct Answer<'a> {
     /// Fingers measured on a robot: those given to the study, else the published ones; empty for
     /// several tasks.
     pub measured: Vec<MeasuredFinger>,
-    /// Contact force of the finger to print, if it exceeds what connector or robot withstand.
+    /// Contact force of the finger to print, if it exceeds a limit of connector or robot.
     pub force: Option<ExcessForce>,
     /// Rank correlation of simulated and measured ranges, for each task with measurements.
     pub rank_correlations: Vec<(&'a str, RankCorrelation)>,
@@ -101,7 +101,7 @@ impl<'a> Answer<'a> {
         answer
     }
 
-    /// Returns the design to print by simulation, with its evaluation; `None` if there is none.
+    /// Returns the evaluation of the design to print according to simulation alone; `None` if there is none.
     pub fn design_to_print(&self) -> Option<&'a Recorded> {
         let found = self.recommended.as_ref()?;
         match (&self.verdict, &found.ties) {

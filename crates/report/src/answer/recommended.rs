@@ -26,9 +26,10 @@ pub struct Recommended<'a> {
     pub firm_window_mm: Option<[f64; 2]>,
     /// Evaluation on each task.
     pub tasks: Vec<OnTask<'a>>,
-    /// Evaluations with the stiffness computed from the finger's ribs, if there are any.
+    /// Evaluations with the stiffness computed from the finger's ribs; `None` if it was not confirmed, or was evaluated
+    /// with such a stiffness already.
     pub by_ribs: Option<&'a ByRibs>,
-    /// Start in the (firm) window; `None` for several tasks.
+    /// Position of the start in the firm window or, without one, in the window; `None` for several tasks.
     pub start: Option<Start>,
     /// Designs that tie with the recommended one; `None` for a Pareto front.
     pub ties: Option<Ties<'a>>,
@@ -41,7 +42,7 @@ pub struct OnTask<'a> {
     pub name: &'a str,
     /// Evaluation on the task.
     pub measured: &'a Evaluation,
-    /// Firm part of the window, if its ends were repeated.
+    /// Result of the repeats at both ends of the window, if they were repeated.
     pub firm: Option<&'a FirmResult>,
 }
 

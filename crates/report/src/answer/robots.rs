@@ -1,4 +1,4 @@
-//! The recommended finger on another robot.
+//! Window of the recommended finger on a robot other than that of the study, for comparison.
 
 use super::lines;
 use insertion::evaluation::{Evaluation, grid_mm};

@@ -2,10 +2,10 @@
 
 use super::words::{mm, rounded};
 
-/// Least share of the range on either side of a good start.
+/// Share of the range that a well-centred start has at least on either side.
 const LEAST_SHARE: f64 = 0.25;
 
-/// The taught start in the window of a finger.
+/// Position of the taught start in the window of a finger.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Start {
     /// Both ends of the window, mm from the start.
@@ -23,13 +23,13 @@ impl Start {
             .then(|| Start { window_mm, to_middle_mm: rounded((low + high) / 2.0, 3) })
     }
 
-    /// Returns whether one side is so small that the start should be taught again.
+    /// Returns whether the window is so small on one side that the start should be taught again.
     pub fn one_sided(&self) -> bool {
         let [low, high] = self.window_mm;
         high.min(-low) < LEAST_SHARE * (high - low)
     }
 
-    /// Returns where to teach the start instead; `None` if it is well centred.
+    /// Returns advice on the start to teach instead; `None` if the start is well centred.
     pub fn advice(&self) -> Option<String> {
         let [low, high] = self.window_mm;
         let side = if self.to_middle_mm < 0.0 { "-y" } else { "+y" };

@@ -9,25 +9,26 @@ use insertion::evaluation::objective::Measure;
 use insertion::space::label;
 use study::{Recorded, StudyRecord};
 
-/// Designs whose first objective differs from that of the recommended design by less than the study's indifference.
+/// Designs whose first objective is worse than that of the recommended design by at most the study's indifference (mm),
+/// or not at all if the objective is not a length.
 #[derive(Debug, Clone)]
 pub struct Ties<'a> {
-    /// Designs in the order of their evaluation, including the recommended design, each with its loss in the first
-    /// objective.
+    /// Designs in the order of their evaluation, including the recommended design, each with its loss against that
+    /// design, in the unit of the first objective; negative if it is better.
     pub designs: Vec<(&'a Recorded, f64)>,
-    /// Smallest and largest value of each free parameter of the space.
+    /// Values over these designs of each parameter of the space whose bounds differ.
     pub spread: Vec<Spread<'a>>,
     /// Share of the space that is nearer to a tied design than to any other design, 0 to 1. The number of tied designs
     /// alone is misleading, since a search samples good regions more densely.
     pub share: f64,
-    /// Designs of extreme force or stiffness: reason to choose the design, design, value and unit; empty if the
-    /// recommended design has no ties.
+    /// Designs with the least force, the least and the largest stiffness along y, each with label, value and unit;
+    /// empty if the recommended design has no ties.
     pub alternatives: Vec<(&'static str, &'a Recorded, f64, &'static str)>,
-    /// Design to take if no other criterion decides; `None` if the recommended design has no ties.
+    /// The safe choice; `None` if the recommended design has no ties, or all exceed a force limit.
     pub safe: Option<SafeChoice<'a>>,
 }
 
-/// Values of a parameter over a set of designs.
+/// Extent of the values of a parameter over a set of designs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Spread<'a> {
     /// Key in the space file.
@@ -36,16 +37,17 @@ pub struct Spread<'a> {
     pub values: [f64; 2],
 }
 
-/// Safe choice among tied designs.
+/// Safe choice: of the tied designs whose force connector and robot withstand, the one with the widest range measured
+/// on a robot; if none was measured, the one with the least force.
 #[derive(Debug, Clone)]
 pub struct SafeChoice<'a> {
     /// Design.
     pub design: &'a Recorded,
-    /// Range on a robot, mm; `None` if no eligible design was measured: the choice then has the least force.
+    /// Its range measured on a robot, mm.
     pub measured_mm: Option<f64>,
-    /// Largest contact force, N, if any trial inserted.
+    /// Its largest contact force, N, if any trial inserted.
     pub force_n: Option<f64>,
-    /// Loss against the recommended design, in the unit of the first objective.
+    /// Its loss against the recommended design, in the unit of the first objective, rounded to 0.1; not negative.
     pub loss: f64,
 }
 
@@ -64,7 +66,7 @@ impl Spread<'_> {
 impl<'a> Ties<'a> {
     pub(super) fn of(record: &'a StudyRecord, index: u64, measured: &[MeasuredFinger]) -> Self {
         let designs = record.equivalent_designs(index);
-        // A walk finds larger forces than the search.
+        // The walk simulates more starts than the search, so its largest force is at least as large.
         let walked = |found: &'a Recorded| {
             let mut walked = record.walked.iter().map(|walked| &walked.recorded);
             walked.find(|walked| walked.index == found.index).unwrap_or(found)
@@ -93,7 +95,7 @@ impl<'a> Ties<'a> {
         };
         let eligible = || tied.iter().filter(allowed).map(safe);
         let measured = eligible().filter_map(|safe| Some((safe.measured_mm?, safe)));
-        // Of equal ranges the first evaluated: `max_by` returns the last maximum.
+        // Reversed, since `max_by` returns the last of equal maxima, and the first evaluated is wanted.
         let widest = measured.rev().max_by(|a, b| a.0.total_cmp(&b.0));
         let simulated = eligible().filter_map(|safe| Some((safe.force_n?, safe)));
         let least_force = simulated.min_by(|a, b| a.0.total_cmp(&b.0));
@@ -103,7 +105,7 @@ impl<'a> Ties<'a> {
     }
 }
 
-/// Number of points over which the share of the space is estimated.
+/// Number of points from which the share of the space is estimated.
 const POINTS: u32 = 500;
 
 /// Estimates the share of the unit cube (the space with each parameter scaled to 0 to 1) that is nearer to a design of

@@ -73,7 +73,7 @@ impl Trust {
         }
     }
 
-    /// Returns the evidence in a clause.
+    /// Returns a clause that states the evidence.
     pub fn reason(&self) -> String {
         match self {
             Trust::Calibrated { fingers, error_percent } => {
@@ -99,7 +99,7 @@ impl Trust {
     }
 }
 
-/// Returns the range of a finger, mm, if it is among the measured ones.
+/// Returns the measured range of a finger, mm, if it is among the measured ones.
 pub(super) fn range_mm(measured: &[MeasuredFinger], finger: &Design) -> Option<f64> {
     measured.iter().find(|(design, _)| design == finger).map(|(_, range_mm)| *range_mm)
 }

@@ -8,7 +8,7 @@ use insertion::outcome::Outcome;
 use insertion::space::Design;
 use study::{Recorded, StudyRecord, nearest};
 
-/// Smallest share of the space near tied designs ([`Ties::share`]) at which any of them is recommended.
+/// Share of the space near tied designs ([`Ties::share`]) from which on any of them is recommended.
 const MIN_SHARE: f64 = 0.5;
 
 /// Recommended action.
@@ -16,11 +16,11 @@ const MIN_SHARE: f64 = 0.5;
 pub enum Verdict<'a> {
     /// Print this finger.
     Print(&'a Design),
-    /// Print any design of a set.
+    /// Print any of the tied designs.
     Any {
         /// The safe choice.
         safe: &'a Design,
-        /// Size of the set.
+        /// Number of tied designs.
         of: usize,
     },
     /// Use a finger that has already been printed and measured.
@@ -36,7 +36,7 @@ pub enum Verdict<'a> {
     Choose {
         /// The best in the first objective.
         first: &'a Design,
-        /// Size of the front.
+        /// Number of designs on the front.
         of: usize,
     },
     /// No finger inserts on a task.

@@ -1,4 +1,4 @@
-//! Words and numbers of answers, for terminal and page alike, every number with its unit.
+//! Formatting of the designs, numbers and outcomes of answers, for terminal and page alike.
 
 use input::units::N_PER_MM;
 use insertion::evaluation::objective::{Measure, Objectives};
@@ -8,13 +8,13 @@ use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design};
 use insertion::surrogate::Estimate;
 use study::{Recorded, StudyConfig, StudyRecord};
 
-/// Returns the number of evaluations after which the search settled, and the criterion.
+/// Returns the number of evaluations after which the search settled (stopped early), and the criterion, in words.
 pub fn settled(record: &StudyRecord) -> String {
     let (evaluations, gain_mm) = (record.evaluations.len(), record.config.indifference_mm);
     format!("after {evaluations} evaluations: no finger is expected to gain {gain_mm} mm")
 }
 
-/// Returns a range or another length of the 0.1 mm grid: `3.5 mm`.
+/// Formats a range or another length with one decimal: `3.5 mm`.
 pub fn mm(length_mm: f64) -> String {
     Measure::Range.show(length_mm)
 }
@@ -39,7 +39,7 @@ pub fn ends_mm(window: &Window) -> [f64; 2] {
     [window.negative_mm(), window.positive_mm()]
 }
 
-/// Table heading of the compliance used in the trials.
+/// Table heading of the finger's stiffness in the compliance direction (y), as used in the trials.
 pub const COMPLIANCE: &str = "compliance, measured model";
 
 /// Returns a stiffness with its standard deviation, N/mm.
@@ -52,7 +52,7 @@ pub fn stiffness(estimate: Estimate) -> String {
 /// Returns a number with `decimals` decimals and its unit; `none` if it is not finite or too long.
 pub fn number(value: f64, decimals: usize, unit: &str) -> String {
     let text = format!("{value:.decimals$}");
-    // Too long is for example the position of a body after a collision that threw it far away.
+    // Too long: for example the position of a body that a collision threw far away.
     if !value.is_finite() || text.len() > 15 { "none".to_owned() } else { format!("{text} {unit}") }
 }
 
@@ -68,7 +68,7 @@ pub fn rounded(value: f64, decimals: i32) -> f64 {
     (value * scale).round() / scale + 0.0
 }
 
-/// Returns the force of a connector's contact springs: `up to 12 N` or `none given`.
+/// Returns the mating force, that of the connector's contact springs: `up to 12 N` or `none given`.
 pub fn mating_force(largest: Option<f64>) -> String {
     largest.map_or("none given".to_owned(), |largest| format!("up to {}", number(largest, 1, "N")))
 }
@@ -79,7 +79,7 @@ pub fn outcome(outcome: Outcome) -> String {
     format!("{}{class}", outcome.label())
 }
 
-/// Advice for a nominal start without a failure class, then for each class.
+/// Advice for a nominal start that diverges, then for each failure class.
 const REMEDIES: [&str; 5] = [
     "Check the task's masses, shapes and strokes",
     "Check the grip's force and friction, and that the start is clear of the socket",
@@ -93,12 +93,12 @@ pub fn remedy(nominal: Outcome) -> &'static str {
     REMEDIES[usize::from(nominal.failure().unwrap_or(0))]
 }
 
-/// Returns the outcome that ends a window on one side, in words.
+/// Returns the outcome beyond an end of a window, in words; `None` if the search ended without a failure.
 pub fn end(end: Option<Outcome>) -> String {
     end.map_or("no failure".to_owned(), outcome)
 }
 
-/// Returns the success rate of a design under drawn errors, and its failures.
+/// Returns the success rate of a design under random errors, and its failures by class, in words.
 pub fn success(success: &SuccessRate) -> [String; 2] {
     let rate = success.max_rate().map_or("none".to_owned(), |rate| format!("{rate:.3}"));
     let [low, high] = success.interval();
@@ -118,7 +118,7 @@ pub fn success(success: &SuccessRate) -> [String; 2] {
     ]
 }
 
-/// Returns the robust range and the windows it was computed from.
+/// Returns the robust range, and number, mean and deviation of the ranges it was computed from, in words.
 pub fn robust(robust: &RobustRange) -> String {
     format!(
         "{}: {} windows of mean {}, deviation {}, {} diverged",

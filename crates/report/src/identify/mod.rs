@@ -1,4 +1,4 @@
-//! Identification of a cell from logs of attempts, as JSON, text and a page.
+//! Identification of a cell (robot, grip, plug and socket) from logs of insertion attempts, as JSON, text and a page.
 
 mod page;
 #[cfg(test)]
@@ -141,7 +141,7 @@ fn origin(from: ValueOrigin) -> &'static str {
     }
 }
 
-/// Returns a sentence on the attempt that was not fitted.
+/// Returns a sentence on the attempt that was held out of the fit for validation.
 fn validated(one: &Validation) -> String {
     let Validation { log, offset_mm, outcome, outcome_predicted, misfit, misfit_fitted } = one;
     let means = if one.is_doubtful() { "; do not trust predictions of this cell" } else { "" };
@@ -151,7 +151,7 @@ fn validated(one: &Validation) -> String {
     )
 }
 
-/// Returns a sentence on each phase and force component that the identified cell does not explain.
+/// Returns a sentence on each phase and force component with a misfit of more than 3 standard deviations.
 fn unmodelled(compared: &[Compared]) -> Vec<String> {
     let unexplained = misfits(compared).into_iter().filter(|one| one.after > 3.0);
     let sentence = |one: Misfit| {
@@ -163,7 +163,7 @@ fn unmodelled(compared: &[Compared]) -> Vec<String> {
     unexplained.map(sentence).collect()
 }
 
-/// Formats a number with three significant digits.
+/// Formats a number with three significant digits, but all digits before the point and at most four decimals.
 fn short(value: f64) -> String {
     let digits = (2.0 - libm::log10(value.abs().max(1e-3)).floor()).clamp(0.0, 4.0);
     format!("{value:.0$}", digits as usize)

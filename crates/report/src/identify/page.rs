@@ -19,13 +19,13 @@ use maud::{Markup, PreEscaped, html};
 use parameters::{Parameter, Scale, Transform};
 use plotters::prelude::Color;
 
-/// Largest number of points of a curve, and of points before the first contact (0.1 s).
+/// Largest number of plotted points of a curve, and number of samples before the first contact (0.1 s).
 const POINTS: usize = 400;
 const AIR: usize = 50;
-/// Smallest ratio of the misfit after to the misfit before identification on which the page comments.
+/// Ratio of the misfit after identification to that before, above which the page mentions it.
 const WORSE: f64 = 1.1;
 
-/// Returns the page: numbers of the cell, robot and probes, and every attempt, measured and simulated.
+/// Returns the page: parameters ("numbers") of the cell, robot and probes, and every attempt, measured and simulated.
 pub fn html(result: &IdentificationResult) -> String {
     let IdentificationResult { task, runs, remarks, found, .. } = result;
     let (serious, notes): (Vec<_>, Vec<_>) = remarks.iter().partition(|remark| remark.serious);
@@ -89,7 +89,7 @@ fn headline(IdentificationResult { task, found, .. }: &IdentificationResult) -> 
     format!("{task}: {identified} of {all} numbers of the cell identified")
 }
 
-/// Returns a sentence on the number of logs and of numbers that were not fitted.
+/// Returns a sentence on how many attempts and probes were used, and how many parameters were not fitted.
 fn evidence(found: &Identified) -> String {
     let attempts = input::counted(found.compared.len(), "attempt");
     let probes = input::counted(found.probes.len(), "probe");
@@ -100,8 +100,8 @@ fn evidence(found: &Identified) -> String {
     format!("From {attempts} and {probes}{fixed}.")
 }
 
-/// Returns the numbers of attempts that are simulated to end as measured, in words, and whether the identified numbers
-/// predict fewer outcomes than the files' numbers.
+/// Returns, in words, how many attempts have the measured outcome in simulation, and whether there are fewer with the
+/// identified parameters than with those of the files.
 pub(super) fn outcomes(compared: &[Compared]) -> (String, bool) {
     let [before, after] = [|one: &Compared| one.before.1, |one: &Compared| one.after.1]
         .map(|of| compared.iter().filter(|one| one.logged.outcome == of(one)).count());
@@ -112,7 +112,7 @@ pub(super) fn outcomes(compared: &[Compared]) -> (String, bool) {
     (text, after < before)
 }
 
-/// Returns the identified numbers by the origin of their values, the agreement of the outcomes, and the misfit.
+/// Returns the parameters by the origin of their values, the agreement of the outcomes, and the misfit.
 fn summary(found: &Identified) -> Vec<(String, String)> {
     let named = |from: ValueOrigin| {
         let of = found.unknowns.iter().filter(|one| one.from == from);
@@ -138,14 +138,14 @@ fn summary(found: &Identified) -> Vec<(String, String)> {
     all.into_iter().flatten().chain(more.map(|(name, text)| (name.to_owned(), text))).collect()
 }
 
-/// Returns a row of the table of numbers.
+/// Returns a row of the table of parameters.
 fn unknown(one: &Unknown) -> Vec<Markup> {
     let Unknown { prior, posterior, remaining_sd, from, advice } = one;
     let identified = *from != ValueOrigin::Prior;
     let source = posterior.source.strip_prefix(origin(*from)).unwrap_or(&posterior.source);
     let source = source.trim_start_matches([':', ' ']);
     let (share, expected) = match (remaining_sd, from) {
-        // The fit started from the formula's value, so its own share is not of the prior.
+        // Here `remaining_sd` refers to the formula's value, from which the fit started, not to the prior.
         (_, ValueOrigin::Formula) => (deviation(posterior) / deviation(prior), None),
         (Some([expected, actual]), _) => (*actual, Some(*expected)),
         (None, _) => (1.0, None),
@@ -182,7 +182,8 @@ pub(super) fn amount(row: &Parameter) -> String {
     }
 }
 
-/// Returns the standard deviation of a parameter on its own scale.
+/// Returns the standard deviation of a parameter on its scale, that of its logarithm for a log scale; without a value,
+/// that of the uniform distribution between its bounds.
 fn deviation(row: &Parameter) -> f64 {
     let log = row.scale == Scale::Log;
     match row.value.zip(row.sd) {
@@ -234,7 +235,7 @@ fn probe((file, friction): &(String, Friction)) -> Vec<String> {
     vec![file.clone(), coefficient, slides(true), slides(false)]
 }
 
-/// Returns the reason why a simulated curve is shorter than the measured one, if it is.
+/// Returns a sentence on why a simulated curve is shorter than the measured one, if it is; `name` is its colour.
 fn shorter(one: &Compared, simulated: &(Curves, Outcome), name: &str) -> Option<String> {
     let [all, end] = [&one.logged.curves, &simulated.0].map(|curves| curves.force.len());
     let time = end as f64 * STEP_S;
@@ -274,7 +275,7 @@ fn attempt(one: &Compared) -> Markup {
     }
 }
 
-/// Returns the misfit of the force by phase and axis.
+/// Returns the table of the misfits of the force by phase and component, before and after identification.
 fn misfit(compared: &[Compared]) -> Markup {
     let number = |misfit: f64| match misfit > 0.0 {
         true => format!("{misfit:.2}"),
@@ -291,7 +292,7 @@ fn misfit(compared: &[Compared]) -> Markup {
     table(&["misfit", "fx", "fy", "fz"], all.chunk_by(|a, b| a.phase == b.phase).map(row))
 }
 
-/// Returns a sentence on the components of the force that the identified numbers explain less well.
+/// Returns a sentence on the components of the force whose misfit is larger with the identified parameters.
 fn worse(compared: &[Compared]) -> Option<String> {
     let larger = |one: &Misfit| one.before > 0.0 && one.after > WORSE * one.before;
     let all = misfits(compared).into_iter().filter(larger);

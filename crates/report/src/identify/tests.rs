@@ -32,7 +32,7 @@ fn attempt() -> Compared {
     Compared { before: simulated(0.2), after: simulated(0.95), logged }
 }
 
-/// Twelve attempts and a probe, by which the first number is fitted, and the others are not identifiable.
+/// Returns a result from twelve attempts and a probe: the first parameter is fitted, the others are not identifiable.
 fn done() -> IdentificationResult {
     let cell = Priors::parse(PRIORS[0].text, PRIORS[0].file).unwrap();
     let unknown = |(i, prior): (usize, &parameters::Parameter)| Unknown {

@@ -3,7 +3,7 @@
 use super::*;
 use serde_json::json;
 
-/// Every outcome and a long design; by the estimate of a text's width, which is above that of usual fonts.
+/// A map with every outcome and a long design. The width of a text is estimated as that of a font wider than usual.
 #[test]
 fn no_entry_of_the_legend_is_cut() {
     let axis = |name| json!({"name": name, "unit": "mm", "low": 0.0, "high": 2.0, "step": 1.0});

@@ -8,7 +8,7 @@ use crate::theme::{BLUE, MUTED, RED};
 use insertion::outcome::Outcome;
 use plotters::prelude::{Color, SeriesLabelPosition};
 
-/// Plots the contact force on the plug against the depth of its tip, from the search on, as an SVG.
+/// Plots the contact force on the plug against the depth of its tip, from just before the first contact, as an SVG.
 pub fn svg(film: &Film) -> Result<String, ReportError> {
     render("force against depth", (760, 480), |area| draw(area, film))
 }

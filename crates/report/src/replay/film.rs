@@ -1,4 +1,4 @@
-//! Data of a film for its page.
+//! Data of a film (recorded trial) for the page that plays it.
 
 use super::Film;
 use crate::answer::words::{self, rounded};
@@ -8,14 +8,14 @@ use input::units::MM;
 use insertion::trial::record::Frame;
 use serde_json::{Value, json};
 
-/// Smallest time between two frames of a page, s.
+/// Smallest time between two frames of the page, s.
 const INTERVAL: f64 = 6e-3;
-/// Largest number of frames of a page.
+/// Approximate largest number of frames of a film on the page.
 const MAX_FRAMES: f64 = 500.0;
-/// Drawn height of the jaws above the grasp point, mm.
+/// Height at which the jaws are drawn above the shoulder of the part, mm.
 const JAW_MM: f64 = 45.0;
 
-/// Returns the bodies of a film: kind, key of their pose, shapes.
+/// Returns kind, key of the poses and shapes of each body; the socket does not move, finger 0 is at -y.
 fn bodies(film: &Film) -> [(&'static str, &'static str, Vec<Geom>); 5] {
     let task = film.task;
     let tip = |side| film.pad.geoms(film.task.grip.shoulder(), side);
@@ -58,7 +58,7 @@ pub(super) fn data(film: &Film) -> Value {
         "label": film.label,
         "outcome": format!("{failed}{}", words::outcome(trial.outcome)),
         "kind": trial.outcome.word(),
-        // Rounded like the times, so that the last frame has its outcome.
+        // Rounded like the times of the frames, so that it is not after the last one.
         "decided_s": rounded(recording.decided_s, 4),
         "phases": phases.collect::<Vec<_>>(),
         "bodies": bodies(film).into_iter().flat_map(surfaces).collect::<Value>(),
@@ -74,7 +74,8 @@ pub(super) fn data(film: &Film) -> Value {
     })
 }
 
-/// Returns the box that is drawn as the finger between the roof of its tip and its jaw, in the frame of the finger.
+/// Returns the box that is drawn as the finger from the roof above its pad to its jaw, in the frame of the finger: half
+/// width along x, thickness along y, and lower and upper end along z, mm.
 fn beam(film: &Film) -> Value {
     let geoms = film.pad.geoms(film.task.grip.shoulder(), 1.0);
     let corners = geoms

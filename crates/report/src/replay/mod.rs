@@ -1,4 +1,4 @@
-//! Recorded trials as a page that plays them, a table and a curve.
+//! Recorded trials as a page that plays them, a CSV table, and a plot of force against depth.
 
 mod curve;
 mod film;
@@ -22,7 +22,7 @@ pub struct Film<'a> {
     pub label: &'a str,
     /// Task of the trial.
     pub task: &'a Task,
-    /// Pad and roof of the fingers.
+    /// Pad of the fingers, which presses the part, and the roof above it.
     pub pad: &'a Pad,
     /// Recording of the trial.
     pub recording: &'a Recording,
@@ -31,33 +31,33 @@ pub struct Film<'a> {
 /// Ends of a window: name and step outward.
 pub const ENDS: [(&str, OffsetStep); 2] = [("negative", -1), ("positive", 1)];
 
-/// Returns the path, in the folder of a study, of the pair of trials at an end of the recommended window; `task` is
-/// the index of the task.
+/// Returns the path, in the folder of a study, of the page with both trials at an end of the recommended finger's
+/// window; `task` is the index of the task.
 pub fn pair_file(task: usize, end: &str) -> String {
     format!("replay/{}-{end}.html", task + 1)
 }
 
-/// Returns the path of a picture of the end of the pair's failed trial, shown until the films have loaded.
+/// Returns the path of a picture of the last instant of the failed trial, shown until the films are played.
 pub fn poster_file(task: usize, end: &str) -> String {
     format!("replay/{}-{end}.svg", task + 1)
 }
 
-/// Returns a page that plays films side by side, offline. Its script needs no library (three.js has 700 kB, this
-/// 18).
+/// Returns a page that plays films side by side, offline. Its script of 18 kB replaces a library (three.js: 700 kB).
 pub fn page(title: &str, films: &[Film]) -> String {
     let data = films.iter().map(film::data).collect();
     player(title, &embedded(&data))
 }
 
+/// Tag before the data of a page of films.
 const DATA: &str = "<script type=\"application/json\" id=\"films\">";
 
-/// Returns the recordings of a page of films as JSON; `None` for another page.
+/// Returns the JSON data of a page of films; `None` if the page has none.
 pub fn data(page: &str) -> Option<&str> {
     let (_, rest) = page.split_once(DATA)?;
     rest.split('<').next()
 }
 
-/// Returns a page that plays the films of `data`; if `data` is empty, a script can insert it after [`DATA`].
+/// Returns a page that plays the films of `data`, JSON; if it is empty, a script can insert the data after [`DATA`].
 pub(super) fn player(title: &str, data: &str) -> String {
     styled(
         title,

@@ -1,4 +1,5 @@
-//! CSV table of a recording: one line per millisecond, units in the header.
+//! CSV table of a recording: one line per frame, about a millisecond apart; units in the header. `bend` is the
+//! deflection of a finger.
 
 use input::units::MM;
 use insertion::trial::Recording;
@@ -23,7 +24,7 @@ pub fn csv(recording: &Recording) -> String {
     HEADER.to_owned() + "\n" + &recording.frames.iter().map(row).collect::<String>()
 }
 
-/// Returns the name of the phase at a time; after the end, that of the last phase.
+/// Returns the name of the phase at a time; after the last phase, its name.
 fn phase(recording: &Recording, time_s: f64) -> &str {
     let phases = &recording.trial.phases;
     let now = phases.iter().find(|phase| time_s <= phase.time_s + 1e-9).or(phases.last());

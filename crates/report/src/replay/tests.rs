@@ -15,7 +15,7 @@ pub fn task() -> Task {
     Task::parse(TASKS[0].text, TASKS[0].file).unwrap()
 }
 
-/// A plug that sinks by 10 mm in a second and is pressed by a force that grows to 20 N.
+/// Returns a recording of a plug that sinks by 10 mm in a second under a force that grows to 20 N.
 pub fn recording() -> Recording {
     let frame = |i: u32| {
         let time_s = f64::from(i) * 1e-3;

@@ -9,7 +9,7 @@ use std::fmt;
 use std::iter::empty;
 use std::str::FromStr;
 
-/// Optimizer of a study.
+/// Kind of optimizer, with its name on the command line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum OptimizerKind {
     /// `gp`: Gaussian process with log expected improvement.
@@ -24,8 +24,9 @@ pub enum OptimizerKind {
     Grid,
 }
 
-/// Kinds with their names on the command line and their largest numbers of parameters, in the order of help texts. More
-/// parameters could exhaust the memory or take minutes in the model, the covariance matrix or the lattice.
+/// Kinds with their names on the command line and their largest numbers of parameters, in the order of help texts.
+/// With more parameters the model of `gp`, the covariance matrix of `cma-es` or the lattice of `grid` could exhaust the
+/// memory or take minutes.
 const KINDS: [(OptimizerKind, &str, usize); 5] = [
     (OptimizerKind::Gp, "gp", 100),
     (OptimizerKind::CmaEs, "cma-es", 200),

@@ -193,7 +193,7 @@ pub trait Optimizer {
     fn ask(&mut self, n: usize) -> Vec<GridPoint>;
 
     /// Reports the results of all points of the last [`ask`](Self::ask), in its order; or, when no
-    /// results are pending, those of points that were evaluated elsewhere, which are then no longer
+    /// results are pending, those of points that were evaluated without a proposal, which are then no longer
     /// proposed.
     fn tell(&mut self, observations: &[Observation]);
 

@@ -14,10 +14,10 @@ const MAX_ITERATIONS: u64 = 1000;
 /// Consecutive runs without a new point after which the search has converged.
 const BARREN_RUNS: u32 = 3;
 
-/// Nelder-Mead of argmin with an ask-and-tell interface. It minimises the negated merits.
+/// argmin's Nelder-Mead with an ask-and-tell interface. It minimises the negated merits.
 ///
-/// - Each ask repeats the current run with the known values and proposes the first point without one. The
-///   rest of the batch are points that the run needs next if that one fails or succeeds.
+/// - Each ask repeats the current run with the known values and proposes the first point without one. The rest
+///   of the batch are points that the run needs next if that one turns out worse or better than all others.
 /// - Points outside the cube are reflected at its faces; all are snapped to the nearest grid point.
 /// - A run that needs no new value has converged. The next one starts at the best point with half
 ///   the edge, because a simplex can collapse before it reaches an optimum.
@@ -84,8 +84,8 @@ impl NelderMead {
         self.runs += 1;
     }
 
-    /// Returns up to `n` points whose values the run needs, alternately on the assumptions that the points before
-    /// them fail and that they succeed.
+    /// Returns up to `n` points whose values the run needs, taken alternately from two runs: in one all unknown points
+    /// have infinite cost, in the other minus infinite cost.
     fn missing(&self, n: usize) -> Vec<GridPoint> {
         let [failure, success] = [f64::INFINITY, f64::NEG_INFINITY].map(|cost| self.run(cost, n));
         let longest = failure.len().max(success.len());
@@ -98,10 +98,10 @@ impl NelderMead {
         missing
     }
 
-    /// Repeats the run with an assumed cost of the points of unknown cost, and returns these points: at least the
+    /// Repeats the run with the cost `assumed` for points of unknown cost and returns these points: at least the
     /// first `n`, if the run evaluates that many.
     fn run(&self, assumed: f64, n: usize) -> Vec<GridPoint> {
-        // argmin unwraps the costs of the first simplex.
+        // An error at a vertex of the first simplex would panic in argmin.
         let most = n.max(self.simplex.len());
         let known = KnownCosts { costs: &self.costs, assumed, most, missing: RefCell::default() };
         let solver = neldermead::NelderMead::new(self.simplex.clone()).with_sd_tolerance(0.0);

@@ -21,8 +21,8 @@ pub struct Polished {
 }
 
 impl Polished {
-    /// Creates the optimizer from a new `inner` one over `grid`, with up to `search` points of the search and up to
-    /// `polish` points of the polish.
+    /// Creates the optimizer; `inner` must be new and use the same grid. `search` and `polish` are the largest numbers
+    /// of points of the two phases.
     pub fn new(inner: Box<dyn Optimizer + Send>, grid: Grid, search: u64, polish: u64) -> Self {
         Polished {
             inner,
@@ -78,7 +78,7 @@ mod tests {
     use crate::{OptimizerKind, build};
     use std::collections::BTreeSet;
 
-    /// Returns the height of a narrow curved ridge whose top is at (0.6, 0.36) of the first and the last axis.
+    /// Returns the height of a narrow curved ridge with its top at 0.6 on the first and 0.36 on the last axis.
     fn ridge(grid: &Grid, point: &GridPoint) -> f64 {
         let u = grid.unit(point);
         -(0.6 - u[0]).powi(2) - 10.0 * (u[2] - u[0] * u[0]).powi(2)

@@ -93,7 +93,7 @@ impl Costs {
         }
     }
 
-    /// Returns the coordinates of the point of least finite cost on the free axes.
+    /// Returns the coordinates, on the free axes, of the point with the least finite cost.
     pub fn best(&self) -> Option<Vec<f64>> {
         let finite = self.by_point.iter().filter(|(_, cost)| cost.is_finite());
         let (best, _) = finite.min_by(|a, b| a.1.total_cmp(b.1))?;

@@ -1,4 +1,4 @@
-//! Optimizer that is seeded with chosen points.
+//! Optimizer with chosen points after the initial design.
 
 use super::{GridPoint, Observation, Optimizer, StopReason};
 use std::collections::{BTreeSet, VecDeque};
@@ -18,8 +18,8 @@ pub struct SeededOptimizer {
 }
 
 impl SeededOptimizer {
-    /// Creates the optimizer from a new `inner` optimizer, which proposes an `initial` number of points; the
-    /// chosen points must lie on its grid.
+    /// Creates the optimizer from a new `inner` optimizer whose initial design has `initial` points; the chosen
+    /// points must lie on its grid.
     pub fn new(
         inner: Box<dyn Optimizer + Send>,
         initial: usize,

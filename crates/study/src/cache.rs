@@ -1,8 +1,9 @@
 //! Cache of evaluations, shared by studies.
 //!
 //! Each file holds one evaluation. Its name is the SHA-256 of everything that determines the evaluation:
-//! task and finger with the settings of the design, robot, search, engine with its settings, and the
-//! program's sources. A file therefore never becomes outdated, and the folder may be deleted at any time.
+//! task and finger with the settings of the design, robot, method of the window search, plan of the trials under
+//! drawn errors, engine with its settings, and the program's sources. A file therefore never becomes outdated,
+//! and the folder may be deleted at any time.
 //!
 //! Files are written under a temporary name and then renamed, so that several processes need no lock. A
 //! torn or damaged file fails its checksum; the design is then evaluated and written again.

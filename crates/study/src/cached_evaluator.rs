@@ -16,7 +16,7 @@ pub struct CachedEvaluator<'a> {
     pub evaluator: &'a Evaluator,
     /// Method of the search for the ends of a window.
     pub search: Search,
-    /// Plan of the measurements under drawn errors.
+    /// Plan of the trials under drawn errors.
     pub plan: &'a Plan,
     /// Cache, if there is one.
     pub cache: Option<&'a Cache>,
@@ -39,7 +39,7 @@ impl Evaluate for CachedEvaluator<'_> {
 }
 
 impl CachedEvaluator<'_> {
-    /// Returns the measurements of a design if those of all tasks are in the cache.
+    /// Returns the evaluations of a design if those on all tasks are in the cache.
     pub fn cached(&self, design: &Design, race: Option<&Race>) -> Option<Evaluations> {
         let (cache, plan) = (self.cache?, self.plan.against(race));
         let stiffness = self.evaluator.predict(design).ok()?;
@@ -52,7 +52,7 @@ impl CachedEvaluator<'_> {
         Some(Evaluations { stiffness, tasks, cached })
     }
 
-    /// Stores measurements of a worker in the cache.
+    /// Stores the evaluations by a worker in the cache.
     pub fn store(&self, design: &Design, race: Option<&Race>, measured: &Evaluations) {
         let Some(cache) = self.cache else { return };
         let plan = self.plan.against(race);
@@ -63,7 +63,7 @@ impl CachedEvaluator<'_> {
         }
     }
 
-    /// Returns the key of a specimen in the cache.
+    /// Returns the key of a specimen (task, finger and robot of a design) in the cache.
     fn key(&self, cache: &Cache, specimen: &Specimen, plan: &Plan) -> String {
         cache.key(&(specimen, self.search, plan))
     }
@@ -82,7 +82,7 @@ impl CachedEvaluator<'_> {
             return Ok((found, true));
         }
         let evaluation = self.evaluator.measure(specimen, self.search, plan, self.stop)?;
-        // The cancelled evaluation may lack trials.
+        // A cancelled evaluation may lack trials.
         if let Some((cache, key)) = entry.filter(|_| !self.stop.load(Ordering::SeqCst)) {
             cache.put(&key, &evaluation);
         }

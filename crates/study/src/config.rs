@@ -54,10 +54,10 @@ pub struct StudyConfig {
     pub settles: bool,
     /// Method by which designs are selected for confirmation.
     pub confirmation: Confirmation,
-    /// Largest number of evaluations of the subsequent polish.
+    /// Largest number of evaluations of the polish, a local search by Nelder-Mead after the optimizer; 0 for none.
     #[serde(default, skip_serializing_if = "is_default")]
     pub polish: u64,
-    /// Designs proposed at a time; in an asynchronous study, measured at a time.
+    /// Number of designs proposed at a time; in an asynchronous study, evaluated at the same time.
     pub batch: u64,
     /// Whether each result is passed to the optimizer at once, and one more design proposed.
     #[serde(rename = "async", default, skip_serializing_if = "std::ops::Not::not")]
@@ -75,18 +75,19 @@ pub struct StudyConfig {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Confirmation {
-    /// The design that is expected to be the best is confirmed next, until none is expected to improve on the best.
+    /// The design with the largest expected value is confirmed next, until none is expected to improve on the best
+    /// confirmed one.
     #[default]
     Expected,
 }
 
-/// Effort of a bench prediction.
+/// Effort of a bench prediction: of ranges on the real robot, by calibration to measurements.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BenchEffort {
-    /// Simulations, including those that measure the error of the emulator.
+    /// Number of simulations, including those that validate the emulator.
     pub simulations: u16,
-    /// Samples of the posterior.
+    /// Number of samples of the posterior.
     pub samples: u16,
 }
 
@@ -98,7 +99,7 @@ pub struct AnalysisSettings {
     /// Whether the confirmation of the best designs is skipped.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub no_confirm: bool,
-    /// Effort of the bench prediction, if there are measurements.
+    /// Effort of the bench prediction, if there are measurements on the real robot.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bench: Option<BenchEffort>,
     /// Path of the measurement file, as given.
@@ -107,7 +108,7 @@ pub struct AnalysisSettings {
     /// Paths of the task files, as given, in the order of the tasks.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub task_files: Vec<String>,
-    /// Project file and the options set by it, if there is one.
+    /// Project file and the options set by it, as text, if there is one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub project: Option<String>,
 }
@@ -186,13 +187,13 @@ impl StudyConfig {
         Ok(())
     }
 
-    /// Returns whether the only objective is the width of a window, so that confirmation is worthwhile.
+    /// Returns whether the only objective is the width of a window; only such studies are confirmed.
     pub fn optimizes_windows(&self) -> bool {
         matches!(self.objective.single(), Some(Measure::Range | Measure::CentredRange))
     }
 
-    /// Returns whether early stopping is available: for a Gaussian process of one objective in mm without
-    /// constraints and polish.
+    /// Returns whether early stopping is available: for the optimizer `gp` with the width of a window as its only
+    /// objective, without constraints and polish.
     pub fn can_settle(&self) -> bool {
         let gp = self.optimizer.parse() == Ok(OptimizerKind::Gp);
         self.optimizes_windows() && gp && self.constraints.is_empty() && self.polish == 0
@@ -243,9 +244,9 @@ impl StudyConfig {
         self.budget.saturating_add(self.polish)
     }
 
-    /// Returns the fields in which a study on disk differs from a new request, one line each. Ignored are a
-    /// raised budget (unless there is a polish), a budget for a study with early stopping, and whether
-    /// there is a race. Provenance is compared by [`Provenance::differences`].
+    /// Returns the fields in which a study on disk differs from a new request, one line each; `None` if there are
+    /// none. Ignored are a raised budget (unless there is a polish), any budget of a study with early stopping,
+    /// `race`, `settles` and `conclusion`. Provenance is compared by [`Provenance::differences`].
     pub fn differences(&self, requested: &StudyConfig) -> Option<String> {
         let may_rise = requested.polish == 0 && (requested.budget > self.budget || self.settles);
         let budget = if may_rise { requested.budget } else { self.budget };

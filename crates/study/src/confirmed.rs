@@ -4,14 +4,14 @@
 //! designs with undetected gaps. An end may also depend on whether a corner catches.
 //! Therefore, before a design is recommended,
 //!
-//! 1. the ends of the design with the widest expected firm window are repeated with friction, start and step
-//!    varied ([`firm`](insertion::evaluation::robustness::firm)); this goes on with the next design until none
-//!    is likely to improve on the best ([`ask_tell::gp::StoppingCriterion`]);
-//! 2. the design that the rule ranks first by the firm windows is walked: its windows are measured step by step.
-//!    If they change, their ends are repeated, too, and step 1 may follow again.
+//! 1. the design with the widest expected firm window is repeated at the ends of its windows, with friction, start
+//!    and time step varied ([`firm`](insertion::evaluation::robustness::firm)); this goes on with the next design
+//!    until none is likely to improve on the best ([`ask_tell::gp::StoppingCriterion`]);
+//! 2. the design that the rule ranks first by the firm windows is walked: its windows are searched again in steps
+//!    of 0.1 mm. If they change, their ends are repeated, too, and step 1 may follow again.
 //!
-//! The recommended design is the walked one that the rule ranks first by the remaining firm windows. If the
-//! study uses the finger stiffnesses of the paper, each walked design is also measured once with the
+//! The recommended design is the walked one that the rule ranks first by the firm windows after the walk. If the
+//! study uses the finger stiffnesses of the paper, each walked design is also evaluated once with the
 //! stiffnesses computed from its ribs, for comparison only.
 
 use super::folder::read_analysis;
@@ -44,7 +44,7 @@ pub(super) struct ConfirmationFile {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct ConfirmedDesign {
     pub evaluation: u64,
-    /// Repeats on each task at the ends that the search found.
+    /// Results of the repeats on each task, at the ends that the search found.
     pub firm: Vec<FirmResult>,
     /// The walk, if there was one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -56,9 +56,9 @@ pub(super) struct ConfirmedDesign {
 pub(super) struct Walk {
     /// Evaluations on each task.
     pub tasks: Vec<Evaluation>,
-    /// Repeats on each task at the ends of the walk.
+    /// Results of the repeats on each task, at the ends that the walk found.
     pub firm: Vec<FirmResult>,
-    /// Evaluations of the computed finger.
+    /// Evaluations with stiffnesses computed from the ribs.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub computed: Option<ByRibs>,
 }

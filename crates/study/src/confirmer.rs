@@ -1,4 +1,4 @@
-//! Measurements that confirm the best designs of a study; see `confirmed.rs`.
+//! Simulations that confirm the best designs of a study; see `confirmed.rs`.
 
 use super::cached_evaluator::CachedEvaluator;
 use super::confirmed::{ConfirmationFile, ConfirmedDesign, WALK_FILE, Walk, ranked};
@@ -22,9 +22,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Evaluators and settings of the confirmation.
 pub struct Confirmer<'a> {
-    /// Evaluator that measures windows step by step (walks).
+    /// Evaluator that walks windows: it searches them in steps of 0.1 mm.
     pub walker: CachedEvaluator<'a>,
-    /// Evaluator with stiffnesses computed from the ribs, if the study uses those of the paper.
+    /// Evaluator with stiffnesses computed from the ribs, if the study uses the stiffnesses published in the paper.
     pub by_ribs: Option<Evaluator>,
     /// Threads of the simulations.
     pub pool: &'a ThreadPool,
@@ -32,15 +32,15 @@ pub struct Confirmer<'a> {
     pub done: Box<OnConfirmed<'a>>,
 }
 
-/// Progress callback: confirmation step, design, and numbers of confirmed designs and of all.
+/// Progress callback: confirmation step, design, and how many designs of the batch are done and how many it has.
 pub type OnConfirmed<'a> = dyn Fn(ConfirmationStep, &Recorded, [usize; 2]) + Sync + 'a;
 
-/// Kind of confirmation of a design.
+/// Step of the confirmation of a design.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ConfirmationStep {
-    /// Its ends were repeated.
+    /// The ends of its windows were repeated with friction, start and time step varied.
     Repeated,
-    /// Its windows were measured step by step.
+    /// Its windows were walked: searched again in steps of 0.1 mm.
     Walked,
 }
 
@@ -49,7 +49,7 @@ const BATCH: usize = 2;
 
 impl Confirmer<'_> {
     /// Confirms the best designs of a study that has ended, and writes each to the log; `settled` is whether
-    /// the search stopped early.
+    /// the search stopped early because no gain was expected.
     ///
     /// # Errors
     /// If a design cannot be simulated, or the log cannot be written.
@@ -70,8 +70,8 @@ impl Confirmer<'_> {
         log.write(Some(settled.then_some(study.evaluations.len() as u64)))
     }
 
-    /// Returns whether no gain is expected after the first `told` evaluations; confirms the designs on which
-    /// that depends.
+    /// Returns whether no gain is expected, given the first `told` evaluations. Confirms designs until that is
+    /// decided.
     ///
     /// # Errors
     /// If a design cannot be simulated, or the log cannot be written.
@@ -134,8 +134,8 @@ impl Confirmer<'_> {
         }
     }
 
-    /// Repeats the ends of a design or, if that was done, walks it; reuses a result of an earlier run. Returns
-    /// the result and whether it is new; `None` after cancellation.
+    /// Confirms a design by one more step: repeats the ends of its windows or, if that was done, walks them. Reuses
+    /// a result of an earlier run. Returns the result and whether it is new; `None` after cancellation.
     fn confirm_design(
         &self,
         found: &Recorded,
@@ -181,7 +181,7 @@ impl Confirmer<'_> {
         Ok(results?.into_iter().flatten().collect())
     }
 
-    /// Walks a design and repeats the ends that changed.
+    /// Walks the windows of a design and repeats the ends of those that changed.
     fn walk(
         &self,
         searched: &Recorded,
@@ -214,7 +214,8 @@ impl Confirmer<'_> {
         }
     }
 
-    /// Measures the firm windows of a design on all tasks; `known` ones are not measured again.
+    /// Determines the firm window of a design on each task, at whose ends all repeats insert; those in `known` are
+    /// reused.
     fn firm(
         &self,
         recorded: &Recorded,
@@ -235,7 +236,7 @@ impl Confirmer<'_> {
     }
 }
 
-/// Log of the confirmed designs: `walk.json` while it is written.
+/// Log of the confirmed designs, written to `walk.json`.
 pub struct ConfirmationLog {
     dir: PathBuf,
     /// Results of an earlier run.
@@ -244,7 +245,7 @@ pub struct ConfirmationLog {
 }
 
 impl ConfirmationLog {
-    /// Reads the results of an earlier run.
+    /// Begins a log; reads the results of an earlier run for reuse.
     pub fn open(study: &Study) -> Self {
         let (dir, provenance) = (study.dir().to_owned(), study.provenance().clone());
         let file = ConfirmationFile::read(&dir, Some(&provenance));

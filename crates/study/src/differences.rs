@@ -3,7 +3,8 @@
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Returns the fields in which two values differ, one line each; `None` if there are none.
+/// Returns the fields in which two values differ, one line each; `None` if there are none. `who` are the names of
+/// the values in the text.
 pub(super) fn differences<T: Serialize>(ours: &T, theirs: &T, who: [&str; 2]) -> Option<String> {
     let (ours, theirs) = (flat(ours), flat(theirs));
     let keys: BTreeSet<&String> = ours.keys().chain(theirs.keys()).collect();

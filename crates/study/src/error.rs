@@ -27,7 +27,7 @@ pub enum StudyError {
     Locked {
         /// The study's folder.
         dir: PathBuf,
-        /// Process ID, if it is known.
+        /// The word "number" and the process ID, or a text if the ID is unknown.
         owner: String,
     },
     /// The folder or one of its files is invalid.
@@ -57,7 +57,7 @@ pub enum StudyError {
         index: u64,
         /// The design.
         design: String,
-        /// Setting that cannot be simulated.
+        /// Reason.
         source: Box<DesignError>,
     },
 }

@@ -5,9 +5,9 @@
 //! inputs/          copies of the input files, with which the study is resumed; inputs-2/ and so on
 //!                  for further segments
 //! journal.jsonl    evaluations
-//! replay/          films of the trials at both ends of the recommended window
+//! replay/          animations of the trials at both ends of the recommended window
 //! walk.json        confirmation of the best designs
-//! bench.json       prediction for the bench from measurements
+//! bench.json       prediction for the bench (the real robot) from measurements
 //! evaluations.csv  evaluations as a table; convergence.svg and report.html beside it
 //! .lock            lock of the writing process
 //! ```
@@ -54,7 +54,7 @@ pub fn sha256(inputs: &Inputs) -> BTreeMap<String, String> {
     inputs.iter().map(|(role, text)| (role.clone(), hash(text))).collect()
 }
 
-/// Study that is open for writing; no other process can open it.
+/// Study that is open for writing; no other process can open it for writing.
 pub struct Study {
     /// Requested configuration.
     pub config: StudyConfig,
@@ -70,8 +70,8 @@ pub struct Study {
 }
 
 impl Study {
-    /// Begins a study in `dir`, or continues the study there if its configuration is the same or has a
-    /// smaller budget; in a new segment if `accept_changed` and its provenance differs.
+    /// Begins a study in `dir`, or continues the study there if it has the same configuration, apart from a raised
+    /// budget. If `accept_changed` is set, a study of another provenance is continued in a new segment.
     ///
     /// # Errors
     /// If the folder holds another study or cannot be used.
@@ -194,7 +194,7 @@ impl Study {
         Ok(())
     }
 
-    /// Sets the analyses after the search.
+    /// Sets the settings of the analyses after the search.
     ///
     /// # Errors
     /// If the configuration cannot be written.
@@ -232,7 +232,7 @@ impl Study {
         &self.dir
     }
 
-    /// Returns whether the search has settled with these evaluations.
+    /// Returns whether the search has settled (stopped early) with these evaluations.
     pub fn settled(&self) -> bool {
         confirmed::settled(&self.dir, Some(self.provenance()), self.evaluations.len())
     }

@@ -41,13 +41,14 @@ fn attribute(name: String, value: impl Serialize) -> Result<String, serde_json::
     seal(&line, None)
 }
 
-/// Returns the configuration without the fields that may change while the journal stays valid: the analyses after
-/// the search, and the budget of a study without a polish.
+/// Returns the configuration without the fields that may change while the journal stays valid: early stopping, the
+/// analyses after the search, and the budget of a study without a polish.
 fn identity(config: &StudyConfig) -> Result<Value, serde_json::Error> {
     let mut fields = serde_json::to_value(config)?;
     let mut identity = json!({"schema_version": SCHEMA_VERSION});
     if let (Value::Object(fields), Value::Object(identity)) = (&mut fields, &mut identity) {
-        // `remove` would change the order of the other fields.
+        // Each of these two calls determines the order of the other fields, and with it the header of existing
+        // journals: `shift_remove` keeps the order, `remove` does not.
         fields.shift_remove("settles");
         fields.remove("conclusion");
         if config.polish == 0 {

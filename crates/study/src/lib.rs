@@ -1,5 +1,5 @@
-//! Studies: seeded runs of one optimizer on one task and space, in a folder that can be resumed after the
-//! process was killed.
+//! Studies: seeded runs of one optimizer on one or several tasks and a space. A study is recorded in a folder and
+//! can be resumed after the process was killed.
 #![forbid(unsafe_code)]
 #![deny(clippy::print_stdout, clippy::print_stderr)]
 // A panic is a defect; invalid input gives an error.

@@ -4,8 +4,8 @@ use super::folder::Inputs;
 use insertion::robot::Robot;
 use insertion::task::Task;
 
-/// Largest acceptable force as a share of a robot's stop force. An assumption: the scatter of
-/// peak forces on a robot is not measured.
+/// Largest acceptable force as a share of a robot's stop force: an assumption, since the scatter of peak forces
+/// on robots is unknown.
 pub const STOP_SHARE: f64 = 0.9;
 
 /// Largest contact forces of a study, N.
@@ -13,7 +13,7 @@ pub const STOP_SHARE: f64 = 0.9;
 pub struct ForceLimits {
     /// Limit of each connector, for those whose task file has one.
     pub connectors: Vec<Option<f64>>,
-    /// Stop force of the robot, if its file is known.
+    /// Force at which the robot stops, if its file is known.
     pub stop: Option<f64>,
     /// Largest force of the contact springs of each connector, for those whose task file gives it.
     pub mating: Vec<Option<f64>>,

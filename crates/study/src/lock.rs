@@ -6,7 +6,7 @@ use std::io::{Read, Seek, Write};
 use std::path::Path;
 
 const LOCK_FILE: &str = ".lock";
-/// Owner of a lock whose process number cannot be read.
+/// Owner of a lock whose process ID cannot be read.
 pub(super) const UNKNOWN_OWNER: &str = "of unknown number";
 
 /// Locked file of a folder. The system releases the lock when the process ends.
@@ -14,7 +14,7 @@ pub(super) struct Lock(File);
 
 impl Drop for Lock {
     fn drop(&mut self) {
-        // A child process that is just starting has the file open, too: closing it here would leave it locked.
+        // Closing the file would not unlock it while a child process that is being started has inherited it.
         let _ = self.0.unlock();
     }
 }

@@ -1,5 +1,5 @@
-//! Prediction of a study's fingers on the bench from measurements: `bench.json` beside the journal. It is
-//! computed after the search, does not affect it, and can be repeated.
+//! Prediction of the ranges of a study's fingers on the bench (the real robot) from measurements there:
+//! `bench.json` beside the journal. It is computed after the search, does not affect it, and can be repeated.
 
 use super::config::BenchEffort;
 use super::folder::read_analysis;
@@ -23,7 +23,7 @@ pub struct BenchPrediction {
     pub effort: BenchEffort,
     /// Number of measured fingers.
     pub measured: usize,
-    /// Measured fingers with a complete range, and that range, mm.
+    /// Measured fingers with both ends of the range, and that range, mm.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub ranges: Vec<(Design, f64)>,
     /// The other measured fingers, with a lower bound of their range, mm, if there is one.
@@ -71,14 +71,14 @@ pub struct LeaveOneOut {
 pub struct BenchFinger {
     /// The design.
     pub design: Design,
-    /// Mean of the range, mm.
+    /// Mean of the predicted range, mm.
     pub range_mm: f64,
-    /// Lower end of the 80 % interval.
+    /// Lower end of its 80 % interval, mm.
     pub low_mm: f64,
-    /// Upper end.
+    /// Upper end of the interval, mm.
     pub high_mm: f64,
-    /// Probability that it is the best of the space, 0 to 1.
+    /// Probability that the finger is the best of the space, 0 to 1.
     pub probability_best: f64,
-    /// Failure classes below and above the window.
+    /// Simulated failure classes below and above the window.
     pub failures: [Option<FailureClass>; 2],
 }

@@ -32,7 +32,7 @@ pub struct Provenance {
 /// were not measured.
 pub const BENCH_ROLES: [&str; 2] = ["measurements", "priors"];
 
-/// Evaluations of one provenance.
+/// Consecutive evaluations of the same provenance.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Segment {
@@ -54,7 +54,7 @@ impl Provenance {
         }
     }
 
-    /// Returns whether both give the same simulation results, which bench measurements do not affect.
+    /// Returns whether both give the same simulation results; measurements and priors may differ.
     pub fn simulates_like(&self, other: &Provenance) -> bool {
         let simulated = |provenance: &Provenance| {
             let mut provenance = provenance.clone();

@@ -9,9 +9,10 @@ use std::cmp::Reverse;
 use std::collections::BTreeMap;
 
 impl StudyConfig {
-    /// Returns whether a race cannot change the best design. It leaves only an upper bound of the success rate of a
-    /// loser, which is not enough with other objectives or with a constraint on the success rate. With several
-    /// tasks the aggregate has to be the minimum, so that a design below the bar on one of them has lost.
+    /// Returns whether a race is available, because it cannot change the best design. Of a design that loses, only
+    /// an upper bound of the success rate is known, which is not enough with other objectives or with a constraint
+    /// on the success rate. With several tasks the aggregate has to be the minimum, so that a design worse than the
+    /// best one on any of them has lost.
     pub fn can_race(&self) -> bool {
         let limited = self.constraints.iter().any(|limit| limit.measure == Measure::SuccessRate);
         let worst = matches!(self.aggregate, None | Some(Aggregate::Min));
@@ -20,7 +21,7 @@ impl StudyConfig {
 }
 
 impl Recorded {
-    /// Returns whether its success rate is an upper bound because it lost the race with draws left.
+    /// Returns whether its success rate is only an upper bound because its draws ended early in the race.
     pub fn raced(&self) -> bool {
         self.tasks.iter().flat_map(|task| &task.success).any(|success| success.raced().is_some())
     }
@@ -32,8 +33,8 @@ impl Recorded {
 }
 
 impl Study {
-    /// Returns the race of a design proposed after `told` evaluations against the best evaluation of the current
-    /// model; it depends on the journal alone. Draws in which the best design failed come first, then the others;
+    /// Returns the race of a design proposed after `told` evaluations against the best of the current evaluations;
+    /// it depends on the journal alone. Draws in which the best design failed come first, then the others;
     /// both are sorted by the number of designs that failed in them.
     pub(super) fn race(&self, told: usize) -> Option<Race> {
         let first = first_current(&self.segments) as usize;

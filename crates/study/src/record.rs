@@ -42,9 +42,10 @@ pub struct StudyRecord {
     pub walked: Vec<Walked>,
     /// Finger file, if the fingers were computed.
     pub finger: Option<FingerFile>,
-    /// Largest contact forces, from task and robot files.
+    /// Limits of the contact force, from task and robot files.
     pub limits: ForceLimits,
-    /// Firm values of the first objective of the designs whose ends were repeated, by evaluation.
+    /// First objective with the firm windows (see [`FirmResult`]) of each design whose ends were repeated, by the
+    /// index of its evaluation.
     pub firm_values: BTreeMap<u64, f64>,
     /// Bench prediction, if there are measurements.
     pub on_bench: Option<BenchPrediction>,
@@ -52,14 +53,14 @@ pub struct StudyRecord {
     pub settled: bool,
 }
 
-/// Confirmed design that was walked: its windows were measured step by step.
+/// Confirmed design whose windows were walked: searched again in steps of 0.1 mm.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Walked {
     /// Evaluation and score with the windows of the walk.
     pub recorded: Recorded,
-    /// Firm part of each window under small variations of friction, start and step.
+    /// Firm part of each window, under small variations of friction, start and time step.
     pub firm: Vec<FirmResult>,
-    /// Evaluations with stiffnesses computed from the ribs, if the study uses those of the paper.
+    /// Evaluations with stiffnesses computed from the ribs, if the study uses the stiffnesses published in the paper.
     pub by_ribs: Option<ByRibs>,
 }
 
@@ -88,11 +89,11 @@ pub struct Recorded {
     pub stiffness: Prediction,
     /// Evaluation on each task, in their order.
     pub tasks: Vec<Evaluation>,
-    /// Times of the measurement, the only part that differs between equal runs.
+    /// Times of the evaluation, the only part that differs between equal runs.
     pub timing: Timing,
 }
 
-/// Times of a measurement.
+/// Times of an evaluation.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Timing {
     /// Start, UTC, `YYYY-MM-DDTHH:MM:SS.ffffff`.
@@ -119,7 +120,7 @@ impl Timing {
 }
 
 impl Recorded {
-    /// Returns the value of the first objective, in its unit and sense.
+    /// Returns the value of the first objective in its unit; not negated if it is minimized.
     pub fn value(&self) -> Option<f64> {
         self.score.as_ref()?.values.first().copied()
     }
@@ -163,8 +164,8 @@ impl StudyRecord {
         (self.foreign > 0).then(foreign).into_iter().collect()
     }
 
-    /// Returns the evaluations of the current model: of the last segment, and of those directly before it with
-    /// the same simulation.
+    /// Returns the evaluations of the current simulation: of the last segment, and of those directly before it that
+    /// simulate alike.
     pub fn current(&self) -> &[Recorded] {
         self.evaluations.get(self.first_current() as usize..).unwrap_or_default()
     }
@@ -174,8 +175,8 @@ impl StudyRecord {
         first_current(&self.segments)
     }
 
-    /// Returns the feasible [`current`](Self::current) evaluation with the best first objective, without those that
-    /// lost a race early.
+    /// Returns the feasible [`current`](Self::current) evaluation with the best first objective, without those whose
+    /// draws ended early in a race.
     pub fn best(&self) -> Option<&Recorded> {
         best(&self.config.goals(), self.current())
     }
@@ -193,7 +194,7 @@ impl StudyRecord {
     }
 }
 
-/// Returns the index of the first evaluation of the model of the last segment.
+/// Returns the index of the first evaluation that was simulated like the last segment, without another in between.
 pub(super) fn first_current(segments: &[Segment]) -> u64 {
     let Some(last) = segments.last() else { return 0 };
     let alike = |segment: &&Segment| segment.provenance.simulates_like(&last.provenance);
@@ -243,8 +244,8 @@ pub fn volume(goals: &Goals, evaluations: &[Recorded]) -> Volume {
     Volume { hypervolume: last, reference, so_far }
 }
 
-/// Returns the feasible evaluation with the best first objective, without those that lost a race early. Ties are
-/// broken by the next objectives, then in favour of the earliest evaluation.
+/// Returns the feasible evaluation with the best first objective, without those whose draws ended early in a race.
+/// Ties are broken by the next objectives, then in favour of the earliest evaluation.
 pub fn best<'a>(
     goals: &Goals,
     evaluations: impl IntoIterator<Item = &'a Recorded>,

@@ -1,6 +1,6 @@
 //! Order in which designs are recommended, by
 //!
-//! 1. the larger value of the objective: of the firm window if it was measured, else of the window found by
+//! 1. the larger value of the objective: of the firm window if it was determined, else of the window found by
 //!    the search;
 //! 2. the better centred window: the one whose smaller side is larger;
 //! 3. the smaller contact force, rounded to a newton;
@@ -23,16 +23,18 @@ pub(super) struct Rule<'a> {
     pub space: &'a Space,
 }
 
-/// Criteria of a design in the order of the rule.
+/// Values of a design for the criteria of the rule, in their order.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Rank {
     /// Values of the objectives; `None` if a constraint is violated or there are none.
     values: Option<Vec<f64>>,
     /// Twice the smaller side of the window, mm.
     centred_mm: f64,
-    /// N, rounded.
+    /// Largest contact force, N, rounded.
     force_n: f64,
+    /// Distance from the hull of the measured designs, in units of the measured spans; 0 inside.
     hull_distance: f64,
+    /// Distance from the edge of the space, as a share of the span, 0 to 0.5.
     edge_distance: f64,
     index: u64,
 }

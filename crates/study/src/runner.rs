@@ -23,8 +23,8 @@ pub struct Runner<'a> {
 }
 
 impl Runner<'_> {
-    /// Runs the study to its end with a new optimizer. `stagnates` returns whether no gain is expected after
-    /// a number of evaluations; `progress` is called after each evaluation was written.
+    /// Runs the study to its end with a new optimizer. `stagnates` returns whether no gain is expected, given a
+    /// number of evaluations; `progress` is called for each evaluation written to the journal.
     ///
     /// # Errors
     /// If a design cannot be simulated or the journal cannot be written.
@@ -87,16 +87,16 @@ impl Runner<'_> {
         self.stop.load(Ordering::SeqCst)
     }
 
-    /// Measures a design; returns `None` if the run was cancelled before the measurement was complete.
+    /// Evaluates a design; returns `None` if the run was cancelled before the evaluation was complete.
     fn measure(&self, proposal: Proposal) -> Result<Option<ProposalResult>, StudyError> {
         let measured = (!self.stopped()).then(|| proposal.measure(self.evaluator));
-        // The cancelled measurement may lack trials.
+        // A cancelled evaluation may lack trials.
         measured.filter(|_| !self.stopped()).transpose()
     }
 }
 
 impl Proposal {
-    /// Evaluates the design, in its race if it has one.
+    /// Evaluates the design, against the best design if there is a race.
     ///
     /// # Errors
     /// If the design cannot be simulated.

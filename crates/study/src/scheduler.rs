@@ -1,5 +1,5 @@
-//! Scheduler of a study: selects the designs to measure next and records their results. It does not
-//! depend on how or where designs are measured.
+//! Scheduler of a study: selects the designs to evaluate next and records their results. It does not
+//! depend on how or where designs are evaluated.
 //!
 //! # Guarantee
 //!
@@ -18,9 +18,9 @@
 //! result. Its journal holds the results in order of arrival, each with the number of its proposal: it
 //! depends on the speed of the workers, but can be replayed from that order.
 //!
-//! At most [`MAX_FAILED_STARTS`] designs are measured before one inserts at its nominal start: if none
-//! does, start or strategy are wrong, and no other finger would succeed. The rest of that batch is
-//! measured once a design has inserted.
+//! At most [`MAX_FAILED_STARTS`] designs are evaluated before one inserts at its nominal start: if none
+//! does, the start or the strategy is wrong, and no other finger would succeed. The rest of that batch is
+//! evaluated once a design has inserted.
 
 use super::error::StudyError;
 use super::folder::Study;
@@ -53,15 +53,16 @@ pub enum Ending {
     Interrupted,
 }
 
-/// Evaluations of the current model without an insertion after which a study ends.
+/// Number of current evaluations (see [`StudyRecord::current`](super::StudyRecord::current)) without an insertion at a
+/// nominal start after which a study ends.
 const MAX_FAILED_STARTS: usize = 12;
 
 /// Largest absolute value of an objective; a larger one, or NaN, counts as failed.
 const LARGEST_VALUE: f64 = 1e15;
-/// Largest violation relative to its limit; the limit may be close to 0.
+/// Largest violation, which is relative to its limit and therefore huge if the limit is close to 0.
 const LARGEST_VIOLATION: f64 = 1e30;
 
-/// Design to be measured.
+/// Design to be evaluated.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Proposal {
@@ -77,7 +78,7 @@ pub struct Proposal {
 /// Next step.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Next {
-    /// Measure these designs, in any order; each is returned once.
+    /// Evaluate these designs, in any order; each is returned once.
     Measure(Vec<Proposal>),
     /// Wait for a result.
     Wait,
@@ -93,9 +94,9 @@ pub enum Next {
 pub struct ProposalResult {
     /// Number of the proposal.
     pub number: u64,
-    /// Measurements of the design.
+    /// Evaluations of the design.
     pub measured: Evaluations,
-    /// Start, end and duration of the measurement.
+    /// Start, end and duration of the evaluation.
     pub timing: Timing,
 }
 
@@ -110,7 +111,7 @@ pub struct Scheduler {
     proposed: u64,
     /// Number of evaluations passed to `tell`.
     told: usize,
-    /// Designs being measured, by the number of the proposal.
+    /// Designs being evaluated, by the number of the proposal.
     measuring: BTreeMap<u64, Design>,
     /// Results that are written once all earlier ones have arrived, by index.
     waiting: BTreeMap<u64, Recorded>,
@@ -150,7 +151,7 @@ impl Scheduler {
                 self.tell_batch(study, optimizer);
             }
             if self.settled {
-                // Running measurements are written, too.
+                // Running evaluations are written, too.
                 let written = self.measuring.is_empty();
                 return Ok(if written { Next::Ended(Ending::Settled) } else { Next::Wait });
             }
@@ -216,10 +217,10 @@ impl Scheduler {
         Ok(true)
     }
 
-    /// Passes a batch to `tell` once all of it is measured.
+    /// Passes a batch to `tell` once all of it is evaluated.
     fn tell_batch(&mut self, study: &Study, optimizer: &mut dyn Optimizer) {
         let end = self.told + self.open.len();
-        // If a limit ends within a batch, the rest has to be measured first.
+        // If a limit ends within a batch, the rest has to be evaluated first.
         if end <= study.evaluations.len() && !self.open.is_empty() {
             let points = std::mem::take(&mut self.open).into_values();
             let found = study.evaluations.iter().skip(self.told);
@@ -263,7 +264,7 @@ impl Scheduler {
     }
 
     /// Calls `tell` for each new result and `ask` for one more design after it; returns the designs
-    /// that are not being measured yet.
+    /// that are not being evaluated yet.
     fn next_arrivals(
         &mut self,
         study: &Study,

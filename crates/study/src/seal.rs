@@ -1,4 +1,4 @@
-//! Checksum of each line of a journal.
+//! Lines of JSON with a checksum: of journals, cached evaluations and work for other processes.
 //!
 //! A line is `{contents,"check":"<16 digits>"}` or, with times,
 //! `{contents,"check":"<16 digits>","datetime_start":..}`. The checksum is the beginning of the SHA-256 of

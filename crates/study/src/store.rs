@@ -55,7 +55,7 @@ impl FileStore {
 
 impl Drop for FileStore {
     fn drop(&mut self) {
-        // A child process that is just starting has the file open, too, as in `lock.rs`.
+        // Closing the file might not unlock it, as in `lock.rs`.
         let _ = self.file.unlock();
     }
 }

@@ -1,7 +1,7 @@
-//! Unit of work of a study whose designs are measured by workers, for example on other computers. The
-//! measurement is deterministic and may be repeated.
+//! Unit of work of a study whose designs are evaluated by workers, for example on other computers. The
+//! evaluation is deterministic and may be repeated.
 //!
-//! A [`Work`] holds everything that determines a measurement: design, texts of the input files, seed,
+//! A [`Work`] holds everything that determines an evaluation: design, texts of the input files, seed,
 //! engine with its settings, and the SHA-256 of the program's sources; a worker built from other sources
 //! rejects it. The result contains the SHA-256 of its work. Both are a line of JSON with a checksum, as in
 //! journals.
@@ -17,7 +17,7 @@ use insertion::surrogate::Prediction;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
-/// Proposal with everything that determines its measurement.
+/// Proposal with everything that determines its evaluation.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Work {
@@ -25,9 +25,9 @@ pub struct Work {
     pub proposal: Proposal,
     /// Seed of the drawn errors.
     pub seed: u64,
-    /// Whether the success rate under drawn errors is measured.
+    /// Whether the success rate under drawn errors is determined.
     pub success_rate: bool,
-    /// Whether the robust range under drawn errors is measured.
+    /// Whether the robust range under drawn errors is determined.
     pub robust_range: bool,
     /// Provenance that the worker must have.
     pub provenance: Provenance,

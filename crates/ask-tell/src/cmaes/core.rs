@@ -49,7 +49,7 @@ pub struct Solution {
     pub value: f64,
 }
 
-/// CMA-ES, which **minimises**, with its state in the symbols of the tutorial.
+/// CMA-ES, which **minimises**, in the symbols and with the equation numbers of Hansen's tutorial (see `cmaes`).
 #[derive(Debug, Clone)]
 pub(super) struct CmaEs {
     n: usize,
@@ -67,7 +67,9 @@ pub(super) struct CmaEs {
     b: DMatrix<f64>,
     /// Square roots of the eigenvalues of C.
     d: DVector<f64>,
+    /// Evolution path of the step size.
     p_sigma: DVector<f64>,
+    /// Evolution path of C.
     p_c: DVector<f64>,
     /// Number of generations so far.
     pub generation: u64,
@@ -157,7 +159,7 @@ impl CmaEs {
         self.decompose();
     }
 
-    /// Updates both paths (43), (45) and returns `h_sigma`.
+    /// Updates both evolution paths (43), (45) and returns `h_sigma`, whether the path of C is updated in full.
     fn update_paths(&mut self, p: &Parameters, mean_step: &DVector<f64>) -> bool {
         let gain = sqrt(p.c_sigma * (2.0 - p.c_sigma) * p.mu_eff);
         self.p_sigma.axpy(gain, &self.whiten(mean_step), 1.0 - p.c_sigma);
@@ -211,7 +213,7 @@ impl CmaEs {
         }
     }
 
-    /// Decomposes C. If that fails (C is not finite, and the run ends) the last axes are kept.
+    /// Decomposes C. If that fails (C is not finite, and the run ends) the last eigenvectors are kept.
     fn decompose(&mut self) {
         if self.n == 0 {
             return;

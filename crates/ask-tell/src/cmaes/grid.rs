@@ -13,9 +13,9 @@ const SIGMA: f64 = 0.3;
 const MIN_STD_STEPS: f64 = 0.3;
 /// Generations without a new point after which the run is restarted.
 const BARREN_GENERATIONS: u32 = 8;
-/// Restarts without a new point after which an unseen point is taken instead.
+/// Restarts without a new point after which a point not yet proposed is drawn instead.
 const BARREN_RESTARTS: u32 = 3;
-/// Extra draws for a place in the batch once the generation is full.
+/// Largest number of draws for a point of the batch beyond a full generation.
 const EXTRA_DRAWS: u32 = 50;
 
 /// BIPOP-CMA-ES over a grid. **Maximises**: it minimises the negated values.
@@ -25,7 +25,7 @@ const EXTRA_DRAWS: u32 = 50;
 ///   is an ordinary minimum of the folded function. Axes with one level are omitted.
 /// - *Steps*: the folded candidate is snapped to the nearest grid point. A standard deviation
 ///   never falls below 0.3 steps of its axis.
-/// - *Duplicates* are looked up. Eight generations without a new point end the run; after three
+/// - *Duplicates* get the known value. Eight generations without a new point end the run; after three
 ///   such runs one unseen point is proposed instead.
 /// - *Missing values* (`None`, NaN, infinite) rank behind every value.
 /// - *Batches* that end within a generation enlarge it: the distribution is updated with all its
@@ -125,14 +125,14 @@ impl Optimizer for CmaEsOptimizer {
 
     fn tell(&mut self, observations: &[Observation]) {
         self.costs.tell(observations);
-        // Results told before the first ask: start at the best of them.
+        // Results from before the first proposal: the run starts at the best of them.
         if self.generation.is_empty()
             && self.restarts.current.generation == 0
             && let Some(best) = self.costs.best()
         {
             self.restarts.current.mean = best.into();
         }
-        // A candidate whose value is never told would block its generation.
+        // A candidate that never gets a value would block its generation.
         self.generation.retain(|(_, point)| self.costs.by_point.contains_key(point));
     }
 

@@ -6,19 +6,23 @@ use crate::stream::stream;
 use libm::pow;
 use rand::RngExt;
 
-/// CMA-ES with restarts: **minimises**, never stops by itself. Runs of doubling population are
-/// interlaced with runs of small population and step size that together get as many evaluations.
+/// CMA-ES with restarts: **minimises**, never stops by itself. Runs with doubled populations alternate with runs of
+/// small population and step size such that both kinds get about as many evaluations.
 #[derive(Debug, Clone)]
 pub struct Restarts {
     start: StartBox,
     seed: u64,
     pub(super) current: CmaEs,
+    /// Evaluations of the current run.
     evaluations: u64,
+    /// Whether the current run counts as small.
     small: bool,
+    /// Evaluations of all small runs that have ended.
     small_budget: u64,
+    /// Evaluations of all large runs that have ended.
     large_budget: u64,
     large_runs: i32,
-    /// Runs that have ended.
+    /// Number of runs that have ended.
     runs: u64,
 }
 

@@ -28,8 +28,9 @@ pub(super) struct History {
     best: Vec<f64>,
     /// Median value of each generation, oldest first.
     median: Vec<f64>,
-    /// Consecutive generations with a flat best third.
+    /// Consecutive generations whose best third has equal values.
     flat: u32,
+    /// Range of the values of the last generation.
     last_range: f64,
 }
 

@@ -49,8 +49,8 @@ pub(super) fn log_probability_above(mean: f64, std: f64, threshold: f64) -> f64 
 }
 
 /// Returns the log of the expected hypervolume improvement (Emmerich et al. 2011, CEC, doi
-/// 10.1109/CEC.2011.5949880) of a normal vector with independent components; `cells` are disjoint boxes that
-/// cover the non-dominated region.
+/// 10.1109/CEC.2011.5949880) of a normal vector with independent components; `moments` are the mean and standard
+/// deviation of each, and `cells` are disjoint boxes that cover the non-dominated region.
 ///
 /// Within one cell the components are independent, and the length of `[low, min(f, high)]` is
 /// the improvement over `low` minus that over `high`: so the expectation is a sum over the cells

@@ -13,11 +13,11 @@ pub(super) struct Standardised {
     pub values: Vec<f64>,
     /// The noise floor as a variance in the same units, in [1e-8, 1].
     pub noise_floor: f64,
-    /// The value 0 in the units of the model.
+    /// The value 0 in the units of the model; NaN after a power transformation.
     pub zero: f64,
-    /// Mean of the given values.
+    /// Mean of the given values, in their units.
     pub mean: f64,
-    /// Standard deviation of the given values; 0 if all are equal.
+    /// Standard deviation of the given values, in their units; 0 if all are equal.
     pub deviation: f64,
     /// Power transformation, if there is one.
     pub warp: Option<Warp>,
@@ -25,9 +25,8 @@ pub(super) struct Standardised {
 
 /// Standardises `values`; `noise_floor` is a standard deviation in objective units.
 ///
-/// A missing or infinite value counts as the worst finite one: the model learns that the region is bad
-/// without a number that dominates the others. Constant values become zeros.
-/// `None` if no value is finite.
+/// A missing, infinite or NaN value counts as the worst finite one, so that the model learns that the region is bad
+/// but no extreme value dominates the fit. Equal values become zeros. Returns `None` if no value is finite.
 pub(super) fn standardise(values: &[Option<f64>], noise_floor: f64) -> Option<Standardised> {
     let finite = || values.iter().flatten().copied().filter(|v| v.is_finite());
     let worst = finite().reduce(f64::min)?;
@@ -50,8 +49,8 @@ pub(super) fn standardise(values: &[Option<f64>], noise_floor: f64) -> Option<St
 
 impl Standardised {
     /// Returns the values under the power transformation that makes their distribution closest to normal,
-    /// with the noise floor multiplied by its average slope and NaN as `zero`; returns them unchanged if no
-    /// transformation is found.
+    /// with the standard deviation of the noise floor multiplied by the mean slope of the transformation; returns
+    /// them unchanged if no transformation is found.
     pub fn warped(self) -> Self {
         let sample: Vec<f64> =
             spread(self.values.len(), MAX_WARP_SAMPLE).map(|i| self.values[i]).collect();
@@ -60,8 +59,8 @@ impl Standardised {
         Standardised { values, noise_floor, zero: f64::NAN, warp: Some(warp), ..self }
     }
 
-    /// Converts a value to the units of the model; infinite if all given values are equal and `value` differs
-    /// from them.
+    /// Converts a value to the units of the model. If all given values are equal, the result is NaN for that value
+    /// and infinite for others.
     pub fn convert(&self, value: f64) -> f64 {
         let standard = (value - self.mean) / self.deviation;
         self.warp.map_or(standard, |warp| warp.apply(standard))

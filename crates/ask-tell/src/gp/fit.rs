@@ -31,6 +31,9 @@ const LOG_SIGNAL: (f64, f64) = (-4.6, 4.6);
 /// Range of the log noise variance above the floor.
 const LOG_NOISE: (f64, f64) = (-18.4, 0.0);
 
+/// Fits the hyperparameters to standardised values `y` at points `x` of the unit cube; `noise_floor` is a variance
+/// in the units of `y`.
+///
 /// Returns the best hyperparameters found from `warm` (those of the last fit) and, if there are none or
 /// `effort` requires it, from three fixed starting points: the prior's mode, short and long length
 /// scales. Returns the prior's mode if every start fails. Ends soon after `stopped` returns true; the result

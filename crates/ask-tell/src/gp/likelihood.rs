@@ -5,11 +5,13 @@ use crate::process::factor::inverse;
 use crate::process::{Process, distance2, matern52, matern52_slope};
 use nalgebra::DMatrix;
 
-/// Returns mean and standard deviation of the normal prior of each log hyperparameter.
+/// Returns mean and standard deviation of the normal prior of each log hyperparameter, in the order of
+/// [`Hyperparameters::to_vec`].
 ///
-/// Length scales: log-normal prior of Hvarfner et al. 2024 (arXiv 2402.02229), which scales with
-/// the square root of the dimension; the mean here is the logarithm of its mode. Signal and noise
-/// variance: centred on about 1 and 1e-4 of the variance of the data, both very wide.
+/// Length scales: log-normal prior of Hvarfner et al. 2024 (arXiv 2402.02229), whose median grows with the
+/// square root of the dimension. The fit maximises the density of the length scale rather than of its logarithm,
+/// so the mean here is the logarithm of the mode. Signal and noise variance: wide priors around 1 and 1e-4 times
+/// the variance of the data.
 pub(super) fn priors(dimension: usize) -> Vec<(f64, f64)> {
     let length = std::f64::consts::SQRT_2 - 3.0 + 0.5 * libm::log(dimension.max(1) as f64);
     let mut priors = vec![(length, 3f64.sqrt()); dimension];
@@ -18,11 +20,11 @@ pub(super) fn priors(dimension: usize) -> Vec<(f64, f64)> {
 }
 
 /// Returns the log posterior of `theta`, up to a constant, and its gradient in the order of
-/// [`Hyperparameters::to_vec`], for points `x` of the unit cube with standardised values `y`.
-/// The constant mean is integrated out under a flat prior (restricted likelihood; Rasmussen and
-/// Williams 2006, section 2.7): with a plug-in least-squares mean, the model of smooth data would
-/// be overconfident in extrapolation.
-/// Returns `None` if the covariance is not positive definite.
+/// [`Hyperparameters::to_vec`], for points `x` of the unit cube with standardised values `y`;
+/// `noise_floor` is a variance in the units of `y`. Returns `None` if the covariance is not positive definite.
+///
+/// The constant mean is integrated out under a flat prior (restricted likelihood; Rasmussen and Williams 2006,
+/// section 2.7): with a plug-in least-squares mean, the model of smooth data would be overconfident in extrapolation.
 pub(super) fn log_posterior(
     x: &[Vec<f64>],
     y: &[f64],
@@ -47,7 +49,8 @@ pub(super) fn log_posterior(
     let w = to_mean / precision.max(f64::MIN_POSITIVE).sqrt();
     let mut value = process.log_likelihood();
 
-    // d value / d theta = 1/2 sum_ij (alpha_i alpha_j + w_i w_j - (K^-1)_ij) dK_ij / d theta.
+    // d value / d theta = 1/2 sum_ij (alpha_i alpha_j + w_i w_j - (K^-1)_ij) dK_ij / d theta, with
+    // alpha = K^-1 (y - mean) and w = K^-1 1 / sqrt(1' K^-1 1).
     let inverse = inverse(&process.factor);
     let mut gradient = vec![0.0; d + 2];
     let (mut through_k, mut trace) = (0.0, 0.0);

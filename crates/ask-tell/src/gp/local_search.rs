@@ -5,7 +5,7 @@ use super::neighbours::{APPROXIMATE_NEIGHBOURS, Neighbours};
 use super::search::{Acquisitions, Search, SearchRegion};
 use crate::GridPoint;
 
-/// Number of neighbours of the models for L-BFGS and single-level steps.
+/// Number of neighbours of the models for L-BFGS and steps of one level.
 const NEIGHBOURS: usize = 90;
 /// Number of candidates on large grids.
 const CANDIDATES: usize = 200;
@@ -15,11 +15,11 @@ const WHOLE_GRID: u64 = 1000;
 const STARTS: usize = 4;
 /// Largest number of gradient evaluations from one start.
 const MAX_GRADIENTS: usize = 20;
-/// Largest number of single-level steps from one start.
+/// Largest number of acquisitions computed for steps of one level from one start.
 const MAX_STEPS: usize = 24;
 
-/// Returns the unseen grid point with the largest acquisition, each by the model near it; `None` if no
-/// unseen point was evaluated or none has a finite acquisition.
+/// Returns the grid point not yet proposed with the largest acquisition found, computed for each point from the models
+/// near it; `None` if there is no such point with a finite acquisition.
 pub(super) fn maximise(known: &Neighbours, region: SearchRegion) -> Option<GridPoint> {
     let candidates = match region.grid().size() {
         ..=WHOLE_GRID => region.grid().points().collect(),
@@ -38,8 +38,8 @@ pub(super) fn maximise(known: &Neighbours, region: SearchRegion) -> Option<GridP
     ends.reduce(|a, b| if b.1 > a.1 { b } else { a }).map(|(point, _)| point)
 }
 
-/// Improves a start by L-BFGS within the trust region of the model near it, then by single-level steps in the
-/// model near the result.
+/// Improves a start by L-BFGS within the trust region of the models near it, then by steps of one level with the
+/// models near the result.
 fn climb(known: &Neighbours, region: SearchRegion, start: &GridPoint) -> Option<(GridPoint, f64)> {
     let x = region.grid().free_unit(start);
     let half_widths = known.trust_region(&x, NEIGHBOURS);

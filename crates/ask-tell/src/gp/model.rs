@@ -88,7 +88,7 @@ impl Gp {
         None
     }
 
-    /// Returns the number of observations and believed points.
+    /// Returns the number of observations and of posterior means treated as such.
     pub(super) fn len(&self) -> usize {
         self.process.len()
     }

@@ -18,10 +18,11 @@ pub(super) struct Neighbours {
     pub x: Vec<Vec<f64>>,
     /// The points in units of the length scales of the first objective.
     scaled: ScaledPoints,
-    /// Values of the objectives, then margins of the constraints, including those of believed points.
+    /// Values of the objectives, then margins of the constraints, including those of points whose posterior mean
+    /// counts as an observation.
     pub data: Vec<Standardised>,
     thetas: Vec<Hyperparameters>,
-    /// Smallest feasible margin of each constraint, in the units of its model.
+    /// Margin 0 of each constraint, the smallest feasible one, in the units of its model.
     pub zeros: Vec<f64>,
     pub goal: Goal,
 }
@@ -38,9 +39,9 @@ impl Neighbours {
         Neighbours { x, scaled, data, thetas, zeros, goal: Goal::Feasible }
     }
 
-    /// Returns models of the `count` points nearest to a location and of a third as many, evenly
-    /// selected from all in the order of observation: the nearest points cluster at an optimum and do not
-    /// determine the slopes around it. `None` if a process cannot be conditioned.
+    /// Returns models conditioned on the `count` points nearest to a location and on `count / 3` points evenly
+    /// selected from all in the order of observation, because the nearest points cluster at an optimum and do not
+    /// determine the slopes around it. Returns `None` if a covariance matrix is not positive definite.
     pub fn near(&self, location: &[f64], count: usize) -> Option<TrainedModels> {
         self.models_of(&self.chosen(location, count))
     }
@@ -68,8 +69,8 @@ impl Neighbours {
         self.goal = near.goal;
     }
 
-    /// Returns the half widths of the trust region around a location for the model of its `count` nearest points:
-    /// half the distance to the farthest of them.
+    /// Returns the half widths of the trust region around a location, per axis in cube edges: half the distance (in
+    /// length scales) to the farthest of its `count` nearest points.
     pub fn trust_region(&self, location: &[f64], count: usize) -> Vec<f64> {
         let far = self.by_distance(location, count).last().map_or(0.0, |&(r2, _)| r2.sqrt());
         self.scaled.inverse_length.iter().map(|i| 0.5 * far / i).collect()
@@ -81,7 +82,7 @@ impl Neighbours {
         near.chain(spread(self.x.len(), count / 3)).collect()
     }
 
-    /// Returns the squared distances and indices of the nearest points, the farthest of them last.
+    /// Returns the squared distances, in length scales, and the indices of the nearest points, the farthest last.
     fn by_distance(&self, location: &[f64], count: usize) -> Vec<(f64, usize)> {
         let mut near: Vec<(f64, usize)> =
             self.scaled.distances2(location).into_iter().zip(0..).collect();

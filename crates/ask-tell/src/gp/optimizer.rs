@@ -6,7 +6,7 @@ use crate::proposed::Proposed;
 use crate::sobol::SobolSequence;
 use crate::{Grid, GridPoint, Observation, Optimizer, StopReason};
 
-/// Default least standard deviation of the noise, in objective units: that of a value rounded
+/// Default lower bound of the standard deviation of the noise, in objective units: that of the rounding of a value
 /// to steps of 0.1, 0.1 / sqrt(12).
 pub const DEFAULT_NOISE_FLOOR: f64 = 0.1 * 0.288_675_134_594_812_9;
 /// Largest number of observed and pending points up to which one global process is conditioned on all of them.
@@ -30,6 +30,7 @@ const MAX_GLOBAL_POINTS: usize = 250;
 pub(crate) struct GpOptimizer {
     proposed: Proposed,
     training: Training,
+    /// Points of the initial design.
     design: SobolSequence,
     told: Vec<Observation>,
     /// Proposed points without a result so far.

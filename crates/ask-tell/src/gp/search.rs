@@ -29,7 +29,7 @@ pub(super) struct SearchRegion<'a> {
     pub incumbents: &'a [GridPoint],
 }
 
-/// Search for the best unseen point.
+/// Search for the unseen point with the largest acquisition; unseen points are those not yet proposed.
 pub(super) struct Search<'a> {
     pub trained: &'a TrainedModels,
     pub region: SearchRegion<'a>,
@@ -74,7 +74,7 @@ impl Search<'_> {
     }
 
     /// Returns the best point found from Sobol points and perturbations of the incumbents, of which the best
-    /// are improved by L-BFGS within the cube and then by single-level steps on the grid.
+    /// are improved by L-BFGS within the cube and then by steps of one level on the grid.
     fn sampled(&self) -> Option<GridPoint> {
         let (n, models) = (self.trained.len(), self.trained.models.len());
         // A prediction takes about n^2 / 4 + 15 n nanoseconds; about six milliseconds in all.
@@ -112,8 +112,8 @@ impl Search<'_> {
         *computed.entry(point.clone()).or_insert_with(acquisition)
     }
 
-    /// Moves by single levels along each axis while they improve the acquisition and `budget` lasts. Stores
-    /// every point that it evaluates in `computed`.
+    /// Moves by one level along each axis as long as this improves the acquisition, with at most `budget` evaluations.
+    /// Stores every evaluated point in `computed`.
     pub fn step_uphill(&self, mut at: GridPoint, mut budget: usize, computed: &mut Acquisitions) {
         let mut value = self.value(&at, computed);
         let free = self.region.grid().free_axes();

@@ -19,7 +19,7 @@ use libm::{exp, sqrt};
 use nalgebra::{DMatrix, DVector};
 
 /// Length scale of the drops relative to the edge of the unit square; in other dimensions it scales
-/// with the diagonal. It is fixed because fits to the few known drops were too long, so that one
+/// with the diagonal. It is fixed because length scales fitted to the few known drops were too long: one
 /// large drop was extrapolated to the whole space (`docs/notes/optimizers.md`).
 const DROP_LENGTH: f64 = 0.15;
 /// Largest number of points to which hyperparameters are fitted.
@@ -154,7 +154,7 @@ impl<'a> StoppingCriterion<'a> {
     }
 
     /// Returns the recommended next step of a search without constraints. Ties are broken in favour of the
-    /// lower `rank`; at most `at_once` points are returned.
+    /// lower `rank`, which has an entry for each observation; at most `at_once` points are returned.
     pub fn advise(&self, rank: &[usize], at_once: usize) -> Advice {
         let Some(best) = self.best() else {
             // Nothing is confirmed before the search itself has settled, since early leaders are soon overtaken.
@@ -177,8 +177,8 @@ impl<'a> StoppingCriterion<'a> {
         self.confirm(self.best().unwrap_or(f64::NEG_INFINITY), rank, at_once)
     }
 
-    /// Returns the evaluated points that are likely to beat `best`, or else the best confirmed one if it is not
-    /// final.
+    /// Returns the points not yet confirmed that may beat `best` by the least gain, or else the best confirmed one
+    /// if it is not final.
     fn confirm(&self, best: f64, rank: &[usize], at_once: usize) -> Advice {
         let known = |at: usize| self.confirmed.iter().any(|confirmed| confirmed.index == at);
         let contender = |at: usize| {

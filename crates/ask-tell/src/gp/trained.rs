@@ -10,9 +10,9 @@ const DIFFERENCE: f64 = 1e-4;
 /// Models of the observations, and the goal of the acquisition function.
 #[derive(Debug, Clone)]
 pub(super) struct TrainedModels {
-    /// Model of each objective, then of the margin of each constraint.
+    /// Model of each objective, then of the margin of each constraint (the negated violation).
     pub models: Vec<Gp>,
-    /// Smallest feasible margin of each constraint, in the units of its model.
+    /// Margin 0 of each constraint, the smallest feasible one, in the units of its model.
     pub zeros: Vec<f64>,
     pub goal: Goal,
 }
@@ -60,7 +60,7 @@ impl Front {
 }
 
 impl TrainedModels {
-    /// Returns the number of observations and believed points.
+    /// Returns the number of observations and of posterior means treated as such.
     pub fn len(&self) -> usize {
         self.models.first().map_or(0, Gp::len)
     }

@@ -13,7 +13,7 @@ use std::collections::BTreeSet;
 
 /// Number of incumbents, around which the acquisition is searched more closely.
 const INCUMBENTS: usize = 4;
-/// With local models: number of points with the largest values of which the posterior means are computed.
+/// Number of points with the largest values whose posterior means are compared if the models are local.
 const LEADERS: usize = 16;
 /// Largest number of observations to which the hyperparameters are fitted.
 const MAX_FITTED: usize = 200;
@@ -53,7 +53,7 @@ impl Model {
 /// Hyperparameters of the last fit, and the settings of fits.
 #[derive(Debug, Clone)]
 pub(super) struct Training {
-    /// Least standard deviation of the noise of each objective; 0 for those beyond the last.
+    /// Least standard deviation of the noise of each objective, in its units; 0 for objectives without an entry.
     noise_floors: Vec<f64>,
     /// Hyperparameters of the last fit, of the objectives, then of the constraints.
     thetas: Vec<Hyperparameters>,
@@ -70,8 +70,8 @@ impl Training {
         Training { noise_floors, thetas: Vec::new(), last_count: 0 }
     }
 
-    /// Returns models of the observations `told` at `x`, global (`whole`) or local, and good starting points of
-    /// a search, best first.
+    /// Returns models of the observations `told` at the points `x`, global if `whole` and else local, and good starting
+    /// points of a search, best first.
     pub fn model(
         &mut self,
         told: &[Observation],
@@ -132,7 +132,7 @@ impl Training {
         let objective = |i: usize| {
             let values: Vec<Option<f64>> = told.iter().map(|o| o.values.get(i).copied()).collect();
             let data = standardise(&values, self.noise_floors.get(i).copied().unwrap_or(0.0))?;
-            // Volumes are compared in the units of the objectives, improvements need no unit.
+            // A transformation would distort hypervolumes; the improvement of a single objective needs no unit.
             Some(if objectives == 1 { data.warped() } else { data })
         };
         let margin = |i: usize| {

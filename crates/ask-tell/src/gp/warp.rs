@@ -11,10 +11,11 @@ use libm::{exp, log, log1p, pow};
 /// Power transformation followed by standardisation to mean 0 and variance 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Warp {
+    /// Exponent.
     lambda: f64,
     mean: f64,
     deviation: f64,
-    /// Geometric mean of its slope over the training values.
+    /// Geometric mean of the slope of the transformation over the training values.
     pub slope: f64,
 }
 
@@ -25,9 +26,9 @@ impl Warp {
     }
 }
 
-/// Fits the transformation to standardised values and returns the transformed values with it. The
-/// exponent is the most likely one of -1, -0.9 .. 3 (1 is the identity) for `sample`, a subset of
-/// the values. Returns `None` if no exponent gives finite values that differ.
+/// Fits the transformation to standardised values; returns the transformed values and the transformation.
+/// The exponent is the most likely one of -1, -0.9 .. 3 (1 is the identity) for `sample`, a subset of the
+/// values. Returns `None` if no exponent gives finite values that differ.
 pub(super) fn warp(values: &[f64], sample: &[f64]) -> Option<(Vec<f64>, Warp)> {
     let lambdas = (-10..=30).map(|tenths| f64::from(tenths) / 10.0);
     let scored = lambdas.map(|lambda| (warped(sample, lambda).0, lambda));

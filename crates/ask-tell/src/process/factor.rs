@@ -18,7 +18,7 @@ pub(crate) fn factor(covariance: DMatrix<f64>) -> Option<Factor> {
     (pivots.iter().zip(&diagonal).all(sound) && pivots.sum().is_finite()).then_some(factor)
 }
 
-/// Extends the factor by one point, given its covariances with the others and its variance; `None`
+/// Extends the factor by one point, given its covariances with the others and its variance `own`; `None`
 /// if the result is not positive definite to working precision.
 pub(crate) fn with_point(factor: &Factor, covariances: &DVector<f64>, own: f64) -> Option<Factor> {
     let n = covariances.len();

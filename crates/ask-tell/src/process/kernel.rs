@@ -52,7 +52,8 @@ fn exp_minus(s: f64) -> f64 {
     ] {
         sum = sum * r + reciprocal;
     }
-    // The low bits of `shifted` are k; a float-to-integer conversion would prevent vectorisation.
+    // Multiplies by 2^k: the low bits of `shifted` are k, and the shift moves them into the exponent. A
+    // float-to-integer conversion would prevent vectorisation.
     sum * f64::from_bits(shifted.to_bits().wrapping_add(1023) << 52)
 }
 

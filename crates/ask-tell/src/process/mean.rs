@@ -1,15 +1,17 @@
-//! Linear mean with coefficients by generalised least squares.
+//! Linear mean with coefficients by generalised least squares, in the notation of Rasmussen and Williams 2006,
+//! section 2.7: `K` is the covariance matrix of the observations, and row `p` of `H` holds the values of term `p` at
+//! their points.
 
 use super::factor::Factor;
 use nalgebra::DVector;
 
-/// Posterior precision of the coefficients of `P` terms with a flat prior.
+/// Linear mean of `P` terms: posterior precision of its coefficients with a flat prior.
 #[derive(Debug, Clone)]
 pub(crate) struct LinearMean<const P: usize> {
     /// `K^-1 H'`, by term.
     pub weights: [DVector<f64>; P],
-    /// Rows of `L`, left of its diagonal of ones, in the factorisation `A = H K^-1 H' = L D L'` of the inverse
-    /// covariance of the coefficients.
+    /// Rows of `L`, left of its diagonal of ones, in the factorisation `A = H K^-1 H' = L D L'` of the precision
+    /// matrix of the coefficients.
     lower: [[f64; P]; P],
     /// `D`; 0 for coefficients that the values do not determine.
     pub pivots: [f64; P],
@@ -48,7 +50,7 @@ impl<const P: usize> LinearMean<P> {
         self.solved(std::array::from_fn(|p| self.weights[p].dot(y)))
     }
 
-    /// Returns `r' A^-1 r`, the variance due to the unknown coefficients.
+    /// Returns `r' A^-1 r`, the variance due to the unknown coefficients, with the [`residual`](Self::residual) `r`.
     pub fn variance(&self, k: &DVector<f64>, h: &[f64; P]) -> f64 {
         let half = self.solve_lower(self.residual(k, h));
         let square = |(z, d): (&f64, &f64)| quotient(*z, *d) * quotient(*z, *d) * d;

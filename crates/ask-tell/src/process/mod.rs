@@ -1,4 +1,4 @@
-//! A Gaussian process on a linear mean, for any kernel.
+//! Gaussian process with a linear mean, for any kernel.
 //!
 //! In the notation of Rasmussen and Williams 2006, Gaussian Processes for Machine Learning: values
 //! `y = f(X) + H' beta + noise`, where `f` is a process of mean 0, `K` is the covariance of the
@@ -6,7 +6,7 @@
 //! The prior of the coefficients is flat (section 2.7), so that
 //!
 //! ```text
-//! A = H K^-1 H'                          one over the covariance of beta
+//! A = H K^-1 H'                          precision matrix of beta
 //! beta = A^-1 H K^-1 y                   generalised least squares
 //! alpha = K^-1 (y - H' beta)             weights
 //! mean = h' beta + k' alpha              (2.42)
@@ -20,13 +20,13 @@
 //! Two likelihoods choose a kernel (section 5.4.1):
 //! [`log_likelihood`](Process::log_likelihood), over which the coefficients are integrated out
 //! (2.45), and [`profile_log_likelihood`](Process::profile_log_likelihood), which is maximised over
-//! the coefficients and a factor on `K`.
+//! the coefficients and a common scale of `K`.
 //!
 //! ```
 //! use ask_tell::process::{Process, matern52};
 //! use nalgebra::{DMatrix, DVector};
 //!
-//! // Values of 2 x + sin(x), a line and a process of length 2 and variance 1 about it.
+//! // Values of 2 x + sin(x), modelled as a line plus a process of length scale 2 and variance 1.
 //! let x: Vec<f64> = (0..9).map(f64::from).collect();
 //! let y: Vec<f64> = x.iter().map(|x| 2.0 * x + x.sin()).collect();
 //! let kernel = |a: f64, b: f64| matern52(((a - b) / 2.0).powi(2));
@@ -62,7 +62,7 @@ pub struct Process<const P: usize> {
     pub(crate) factor: Factor,
     pub(crate) mean: LinearMean<P>,
     coefficients: [f64; P],
-    /// `K^-1 (y - H' beta)`; 0 for believed points.
+    /// `K^-1 (y - H' beta)`; 0 for posterior means treated as observations.
     weights: DVector<f64>,
     /// `(y - H' beta)' K^-1 (y - H' beta)`.
     quadratic: f64,
@@ -98,18 +98,18 @@ impl<const P: usize> Process<P> {
         quadratic.is_finite().then_some(process)
     }
 
-    /// Returns the number of values and believed points together.
+    /// Returns the number of observations and of posterior means treated as such.
     pub(crate) fn len(&self) -> usize {
         self.weights.len()
     }
 
-    /// Returns the mean at a point of covariances `k` with the values and terms `h`.
+    /// Returns the mean at a point; `k` are its covariances with the values, `h` its terms.
     pub fn mean(&self, k: &DVector<f64>, h: &[f64; P]) -> f64 {
         h.iter().zip(&self.coefficients).map(|(h, b)| h * b).sum::<f64>() + k.dot(&self.weights)
     }
 
-    /// Returns the variance, without noise, at a point of covariances `k`, terms `h` and the variance
-    /// `prior` of the kernel; it includes the variance due to the coefficients.
+    /// Returns the variance, without noise, at a point; `k` are its covariances with the values, `h` its terms, and
+    /// `prior` is its variance `k(x, x)` by the kernel. The variance due to the coefficients is included.
     pub fn variance(&self, k: &DVector<f64>, h: &[f64; P], prior: f64) -> f64 {
         self.variance_of(k, h, prior, &solve_lower(&self.factor, k))
     }
@@ -130,15 +130,15 @@ impl<const P: usize> Process<P> {
         -0.5 * (self.quadratic + self.log_determinant() + self.mean.log_determinant())
     }
 
-    /// Returns the largest `log p(y | X, beta, s)` over the coefficients and the factor `s` on the
-    /// covariance, less a constant: `-n / 2 log((y - H' beta)' K^-1 (y - H' beta) / n) - 1/2 log |K|`.
+    /// Returns the largest `log p(y | X, beta, s)` over the coefficients and a common scale `s` of the
+    /// covariance matrix, less a constant: `-n / 2 log((y - H' beta)' K^-1 (y - H' beta) / n) - 1/2 log |K|`.
     pub fn profile_log_likelihood(&self) -> f64 {
         let n = self.len() as f64;
         -0.5 * (n * libm::log(self.quadratic / n) + self.log_determinant())
     }
 
-    /// Returns the unbiased estimate of the factor on the covariance from the values:
-    /// `(y - H' beta)' K^-1 (y - H' beta) / (n - P)`. Infinite or NaN for `P` values or fewer.
+    /// Returns the unbiased estimate of a common scale of the covariance matrix,
+    /// `(y - H' beta)' K^-1 (y - H' beta) / (n - P)`. It is meaningless for `P` values or fewer.
     pub fn scale(&self) -> f64 {
         self.quadratic / (self.len() as f64 - P as f64)
     }

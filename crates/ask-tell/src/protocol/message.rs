@@ -83,7 +83,7 @@ pub(super) fn check_count(key: &str, points: usize, parameters: usize) -> Result
     ))
 }
 
-/// Result of a proposed point (`id`) or of a point evaluated elsewhere (`values`).
+/// Result of a proposed point (`id`) or of a point that the client evaluated without a proposal (`values`).
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct PointResult {

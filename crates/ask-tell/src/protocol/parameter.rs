@@ -86,7 +86,10 @@ impl Parameter {
         (if same { rounded } else { value }).clamp(self.low, self.high)
     }
 
-    /// Returns the level of a value: the nearest one if the parameter has no step.
+    /// Returns the level of a value, counted from 0: the nearest one if the parameter has no step.
+    ///
+    /// # Errors
+    /// If the value is not between the bounds or not on the lattice.
     pub fn level(&self, value: f64) -> Result<u32, String> {
         let Parameter { name, low, high, step } = self;
         // The width is 0 if low equals high.

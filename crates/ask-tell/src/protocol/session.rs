@@ -23,9 +23,9 @@ struct Search {
     first: usize,
     /// Number of proposals sent to the client.
     asked: usize,
-    /// Points that were evaluated elsewhere.
+    /// Points that the client evaluated without a proposal.
     known: BTreeSet<GridPoint>,
-    /// Results of those points, to be passed to the optimizer after the current batch.
+    /// Results of such points, to be passed to the optimizer after the current batch.
     waiting: Vec<Observation>,
     best: Option<Best>,
 }

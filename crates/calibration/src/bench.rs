@@ -1,4 +1,4 @@
-//! Benches of one or several tasks: simulation, measurements, and samples of the posterior.
+//! Benches: emulated and measured ranges of a task each, and posterior samples given those of all tasks.
 
 use super::process::{COORDINATES, Conditioned, Finger, Hyperparameters, StiffnessPoint};
 use ask_tell::normal::StandardNormal;
@@ -7,15 +7,16 @@ use rand::{Rng, RngExt};
 use std::cell::RefCell;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Simulated ranges as a function of the uncertain parameters.
+/// Simulated ranges of a task as a function of the uncertain parameters.
 pub trait Simulator: Sync {
     /// Returns the range of a finger, mm; `shares` are the levels of the quantiles of the parameters' priors, 0 to 1.
     fn range_mm(&self, finger: usize, shares: &[f64]) -> f64;
 }
 
-/// Measured range of a finger.
+/// Measured range of a finger, or lower bound of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Observation {
+    /// Index of the finger.
     pub finger: usize,
     pub range_mm: f64,
     /// Whether the range is only a lower bound.
@@ -24,18 +25,19 @@ pub struct Observation {
     pub repeats: u32,
 }
 
-/// Bench of a task: its simulator and its observations.
+/// Bench of a task: its simulator and its observations. A posterior sample is a vector of coordinates with standard
+/// normal priors.
 #[derive(Clone)]
 pub struct Bench<'a> {
     pub simulator: &'a dyn Simulator,
-    /// Coordinates of all fingers in the process.
+    /// Points of all fingers in the process of the discrepancy.
     pub places: &'a [StiffnessPoint],
     pub observations: Vec<Observation>,
-    /// Scale of the task, the unit of the process, mm.
+    /// Unit of the process, mm: the mean simulated range of the task.
     pub scale_mm: f64,
-    /// Error of the emulator, mm: a discrepancy that no parameter explains.
+    /// Root mean square error of the emulator, mm; it is added to the discrepancy.
     pub error_mm: f64,
-    /// Coordinates of the simulator's parameters in a sample.
+    /// Indices of the coordinates of the simulator's parameters in a sample.
     pub parameters: Vec<usize>,
     /// Index of the first coordinate of the bench's hyperparameters in a sample.
     pub first: usize,
@@ -47,7 +49,7 @@ impl Bench<'_> {
         self.parameters.iter().map(|&coordinate| normal_cdf(state[coordinate])).collect()
     }
 
-    /// Returns fingers with their simulated ranges at a sample.
+    /// Returns the fingers of these indices with their simulated ranges at a sample.
     pub fn fingers(&self, numbers: &[usize], state: &[f64]) -> Vec<Finger> {
         let shares = self.shares(state);
         let range_mm = |number: usize| self.simulator.range_mm(number, &shares);
@@ -89,7 +91,7 @@ impl Bench<'_> {
     }
 }
 
-/// Samples the posterior of parameters and hyperparameters: `dimension` coordinates each, with standard normal priors.
+/// Samples the posterior of parameters and hyperparameters as vectors of `dimension` coordinates.
 pub fn sampled(
     benches: &[Bench<'_>],
     dimension: usize,
@@ -120,11 +122,11 @@ pub fn sampled(
 /// Settings of the sampler.
 #[derive(Clone, Copy)]
 pub struct Settings<'a> {
-    /// Sweeps over all coordinates before the first sample is kept.
+    /// Number of sweeps over all coordinates before the first sample is kept.
     pub warm_up: usize,
     /// Number of samples.
     pub samples: usize,
-    /// Sweeps from one sample to the next.
+    /// Number of sweeps from one sample to the next.
     pub thin: usize,
     pub seed: u64,
     /// Cancellation flag; once it is set, results are invalid.

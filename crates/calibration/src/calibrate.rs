@@ -1,4 +1,4 @@
-//! Calibration of all tasks together: meaning of the coordinates, posterior, leave-one-out validation.
+//! Calibration of all tasks together: layout of the posterior samples, predictions, leave-one-out validation.
 
 use super::bench::{Bench, Settings, sampled};
 use super::predict::{IntervalKind, Predicted, draws, predict};
@@ -19,7 +19,7 @@ use study::LeaveOneOut;
 /// Joint draws per sample of the posterior.
 const DRAWS: usize = 3;
 
-/// Coordinate of a sample: a parameter of the simulation.
+/// Parameter of the simulation that is a coordinate of the posterior samples.
 #[derive(Debug, Clone)]
 pub struct Coordinate {
     pub parameter: Parameter,
@@ -27,11 +27,11 @@ pub struct Coordinate {
     pub task: Option<String>,
 }
 
-/// Meaning of a sample's coordinates: the parameters, then each task's hyperparameters.
+/// Meaning of the coordinates of a posterior sample: the parameters, then each task's hyperparameters.
 #[derive(Debug, Clone)]
 pub struct Layout {
     pub coordinates: Vec<Coordinate>,
-    /// Coordinates of the parameters of each task, in the order of its simulation.
+    /// Indices of the coordinates of each task's parameters, in the order of its simulation.
     of_task: Vec<Vec<usize>>,
 }
 
@@ -54,17 +54,18 @@ impl Layout {
         Layout { coordinates, of_task }
     }
 
+    /// Returns the number of coordinates.
     pub fn dimension(&self) -> usize {
         self.coordinates.len() + COORDINATES * self.of_task.len()
     }
 
-    /// Returns samples of the posterior given all measurements; all predictions from the same files use the same
-    /// samples.
+    /// Returns samples of the posterior given all measurements, which are the same for the same inputs and seed.
     pub fn posterior(&self, benches: &[Bench<'_>], settings: &Settings<'_>) -> Vec<Vec<f64>> {
         let mut random = stream(settings.seed, 0, "calibrate");
         sampled(benches, self.dimension(), settings, &mut random)
     }
 
+    /// Returns the bench of each task.
     pub fn benches<'a>(&self, subjects: &'a [Subject]) -> Vec<Bench<'a>> {
         let bench = |(i, subject): (usize, &'a Subject)| {
             subject.bench(self.of_task[i].clone(), self.coordinates.len() + COORDINATES * i)
@@ -76,36 +77,41 @@ impl Layout {
 /// Result of a calibration for one task.
 #[derive(Debug, Clone)]
 pub struct TaskResult {
-    /// Prediction of each finger of the space, in the order of the subject.
+    /// Prediction of each finger of the space, in the order of the subject's designs.
     pub predictions: Vec<Prediction>,
+    /// Leave-one-out prediction of each finger with a measured range.
     pub left_out: Vec<LeftOut>,
 }
 
-/// Predicted range of a finger, by the keys of `--json`.
+/// Predicted range of a finger with its 80 % interval; the fields are the keys of `--json`.
 #[derive(Debug, Clone, Serialize)]
 pub struct Prediction {
     #[serde(flatten)]
     pub design: Design,
+    /// Expected range.
     pub range_mm: f64,
     pub low_mm: f64,
     pub high_mm: f64,
-    /// Probability that it is the best finger of the space, 0 to 1.
+    /// Probability that it has the largest range of the fingers of the space, 0 to 1.
     pub probability_best: f64,
-    /// Range by simulation alone, averaged over the posterior.
+    /// Emulated range without the discrepancy, averaged over the posterior.
     pub simulated_mm: f64,
+    /// Failure below the window.
     pub failure_negative: Option<FailureClass>,
+    /// Failure above the window.
     pub failure_positive: Option<FailureClass>,
 }
 
 /// Result of a calibration.
 pub struct Calibration {
     pub layout: Layout,
+    /// Posterior samples, each with the coordinates of the layout.
     pub posterior: Vec<Vec<f64>>,
     pub tasks: Vec<TaskResult>,
 }
 
 impl Calibration {
-    /// Calibrates the subjects, and leaves out each measured finger in turn.
+    /// Calibrates the subjects together, and validates each task by leaving out its measured fingers.
     pub fn new(layout: Layout, subjects: &[Subject], settings: &Settings<'_>) -> Self {
         let benches = layout.benches(subjects);
         let posterior = layout.posterior(&benches, settings);
@@ -141,7 +147,7 @@ impl Calibration {
     }
 }
 
-/// Returns the share of the draws in which each finger is the best, 0 to 1.
+/// Returns the fraction of the draws in which each finger has the largest range.
 fn shares_best(drawn: &[Vec<f64>], fingers: usize) -> Vec<f64> {
     let mut counts = vec![0_u32; fingers];
     let best = |draw: &Vec<f64>| (0..fingers).max_by(|&a, &b| draw[a].total_cmp(&draw[b]));
@@ -149,13 +155,14 @@ fn shares_best(drawn: &[Vec<f64>], fingers: usize) -> Vec<f64> {
     counts.iter().map(|&count| f64::from(count) / drawn.len().max(1) as f64).collect()
 }
 
-/// Leave-one-out prediction of the range of another measurement of a finger, by the keys of `--json`.
+/// Leave-one-out prediction of the measured range of a finger; the fields are the keys of `--json`.
 #[derive(Debug, Clone, Serialize)]
 pub struct LeftOut {
     #[serde(flatten)]
     pub design: Design,
     /// Measured range of the finger, mm: the mean, if it was measured several times.
     pub measured_mm: f64,
+    /// Predicted range.
     pub range_mm: f64,
     pub low_mm: f64,
     pub high_mm: f64,
@@ -169,8 +176,8 @@ impl LeftOut {
 }
 
 impl TaskResult {
-    /// Returns the accuracy of the leave-one-out predictions, with the error of the emulator. Fingers with a measured
-    /// range of 0 are left out of the mean deviation in percent.
+    /// Returns the accuracy of the leave-one-out predictions; the given error of the emulator is passed on. The mean
+    /// deviation in percent does not include fingers with a measured range of 0.
     pub fn accuracy(&self, emulator_error_mm: f64) -> LeaveOneOut {
         let left_out = &self.left_out;
         let wide = left_out.iter().filter(|one| one.measured_mm > 0.0);
@@ -188,10 +195,10 @@ impl TaskResult {
     }
 }
 
-/// Largest number of leave-one-out calibrations.
+/// Largest number of leave-one-out calibrations of a task; with more measured fingers, several are left out together.
 const MAX_FOLDS: usize = 20;
 
-/// Predicts each measured finger of a bench from the measurements of the others, in at most `MAX_FOLDS` calibrations.
+/// Predicts each finger with a measured range from the others' measurements, in at most `MAX_FOLDS` calibrations.
 fn leave_one_out(
     (benches, task): (&[Bench<'_>], usize),
     designs: &[Design],

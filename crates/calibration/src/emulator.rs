@@ -1,5 +1,5 @@
-//! Emulator of the simulator: a Gaussian process over design and parameters, fitted to a designed set
-//! of simulations (Sacks et al. 1989, doi:10.1214/ss/1177012413). Its error is measured on held-out
+//! Emulator of the simulator: a Gaussian process over design and parameters, fitted to simulations at
+//! Sobol points (Sacks et al. 1989, doi:10.1214/ss/1177012413). Its error is measured on held-out
 //! simulations.
 
 use super::simulation::Simulation;
@@ -26,6 +26,7 @@ struct Point {
     /// Position of the design in the unit cube of the space, then quantile levels of the priors of the parameters.
     at: Vec<f64>,
     range_mm: f64,
+    /// Failures below and above the window.
     failures: [Option<FailureClass>; 2],
 }
 
@@ -123,12 +124,13 @@ impl Emulator {
         Some(emulator)
     }
 
-    /// Returns the simulated range, mm, at shares of the space and quantiles of the parameters' priors.
+    /// Returns the emulated range, mm, at a design in the unit cube of the space and quantile levels of the priors.
     pub fn range_mm(&self, at: &[f64]) -> f64 {
         (self.mean_mm + self.sd_mm * self.process.mean(at)).max(0.0)
     }
 
-    /// Returns the most frequent failure class at each end among the `count` simulations nearest to a design.
+    /// Returns the most frequent failure class at each end of the window among the `count` simulations nearest to a
+    /// design in the unit cube of the space.
     pub fn failures(&self, design: &[f64], count: usize) -> [Option<FailureClass>; 2] {
         let distance = |point: &Point| distance2(&point.at, design);
         let mut nearest: Vec<_> = self.points.iter().collect();

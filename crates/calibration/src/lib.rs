@@ -1,13 +1,18 @@
 //! Calibration of the simulation on few bench measurements: posterior of the unmeasured parameters,
 //! predictions for every finger (Kennedy and O'Hagan 2001, doi:10.1111/1467-9868.00294).
 //!
-//! 1. `simulation`: windows for drawn friction, preload, robot and finger.
-//! 2. `emulator`: a Gaussian process fitted to simulations, with its error.
+//! The tolerance window of a finger on a task is the interval of shifts of the start along y from which the plug is
+//! inserted; its width is the range, mm. A finger is that of a design; a bench is a robot on which ranges are measured.
+//!
+//! 1. `simulation`: windows for given friction, preload, robot and finger.
+//! 2. `emulator`: a Gaussian process fitted to simulated ranges, with its error.
 //! 3. `process`: discrepancy between simulation and bench, a Gaussian process over the stiffness.
-//! 4. `bench`: the posterior of parameters and process, given measurements.
-//! 5. `predict`, `calibrate`: ranges with intervals; each measured finger predicted without it.
+//! 4. `subject`, `bench`: the posterior of parameters and hyperparameters, given the measurements of each task.
+//! 5. `predict`, `calibrate`: ranges with intervals; leave-one-out validation.
 //! 6. `next`: which finger to print.
 //! 7. `table`: the results as JSON and CSV, and their summary in a study.
+//!
+//! `experiments` reads measurements, `identify` estimates parameters from logs of the robot.
 #![forbid(unsafe_code)]
 #![deny(clippy::print_stdout, clippy::print_stderr)]
 // A panic is a bug; invalid input must produce an error with a message.

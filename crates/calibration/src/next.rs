@@ -1,9 +1,9 @@
 //! Selection of the fingers to print next: those whose measurement is expected to improve the final choice most.
 //!
 //! Joint draws of the true ranges give their means and covariances. The value of a print is the sum of two expected
-//! gains: that of the largest expected range of all fingers (knowledge gradient; Frazier et al. 2009,
-//! doi:10.1287/ijoc.1080.0314), since any of them can be printed next, and that of the printed fingers alone, in case
-//! this print is the last. Both are exact for normally distributed ranges. Of several prints each is selected as if
+//! gains: of the largest expected range of all fingers (knowledge gradient; Frazier et al. 2009,
+//! doi:10.1287/ijoc.1080.0314), since any of them can be printed next, and of the printed fingers alone, in case this
+//! print is the last. Both are exact for normally distributed ranges. Of several prints each is selected as if
 //! the measurements of those before it had been the expected ranges (kriging believer; Ginsbourger et al. 2010).
 
 use super::bench::Bench;
@@ -16,22 +16,25 @@ use rayon::prelude::*;
 use serde::Serialize;
 use std::collections::BTreeSet;
 
-/// Finger to print, by the keys of `--json`.
+/// Finger to print; the fields are the keys of `--json`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Print {
     #[serde(flatten)]
     pub design: Design,
+    /// Expected range, mm.
     pub expected_mm: f64,
+    /// Lower end of its 80 % interval, mm.
     pub low_mm: f64,
+    /// Upper end of its 80 % interval, mm.
     pub high_mm: f64,
-    /// Expected increase of the largest expected range of all fingers by this print.
+    /// Expected increase of the largest expected range of all fingers by measuring this one, mm.
     pub expected_gain_mm: f64,
-    /// Whether the finger has to be printed; otherwise only the strategy changes.
+    /// Whether the finger has to be printed; otherwise it exists, and only the strategy is new.
     pub needs_print: bool,
     pub reason: String,
 }
 
-/// Finger with the largest expected range, by the keys of `--json`.
+/// Finger with the largest expected range; the fields are the keys of `--json`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Choice {
     #[serde(flatten)]
@@ -40,7 +43,7 @@ pub struct Choice {
     pub measured: bool,
 }
 
-/// Recommended prints, by the keys of `--json`.
+/// Recommended prints; the fields are the keys of `--json`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Advice {
     /// Expected range of the best measured finger, mm; `None` if none was measured.
@@ -58,18 +61,18 @@ const DRAWS: usize = 4;
 /// Fingers to choose from.
 #[derive(Debug, Clone, Copy)]
 pub struct Fingers<'a> {
-    /// Designs of all fingers; the other fields are indices of them.
+    /// Designs of all fingers; the other fields hold indices into it.
     pub designs: &'a [Design],
     /// Fingers that may be printed.
     pub printable: &'a [usize],
-    /// Printed fingers that insert from no start; their range counts as 0 mm.
+    /// Printed fingers that inserted from no start; their range counts as 0 mm.
     pub failed: &'a BTreeSet<usize>,
     /// Fingers that need no print: they differ from a printed finger in the strategy only.
     pub printed: &'a BTreeSet<usize>,
 }
 
-/// Returns the `count` fingers to print next. Printing a finger costs `cost_mm` of the expected gain; another strategy
-/// for a printed finger costs nothing.
+/// Returns the `count` fingers to print next. A print costs as much as `cost_mm` of range gains; another strategy for a
+/// printed finger costs nothing.
 pub fn advise(
     bench: &Bench<'_>,
     posterior: &[Vec<f64>],
@@ -89,7 +92,8 @@ pub fn advise(
     (measured.len()..known.len()).for_each(|column| ranges.observe(column, 0.0));
     let given = ranges.clone();
     let mut printed: Vec<usize> = (0..known.len()).collect();
-    // In closed form, as a study predicts them, so that both name the same finger; it does not know failed fingers.
+    // In closed form, as a study predicts them, so that both choose the same finger; without failed fingers, which
+    // `predict` ignores.
     let predicted = failed.is_empty().then(|| predict(bench, posterior, &all, IntervalKind::Truth));
     let means = predicted.map_or_else(
         || given.means.clone(),
@@ -151,11 +155,11 @@ struct Ranges {
     means: Vec<f64>,
     /// Deviations from the means, a vector for each draw.
     deviations: Vec<Vec<f64>>,
-    /// Noise variance of a measurement.
+    /// Noise variance of a measurement, mm^2.
     noise2: f64,
 }
 
-/// Expected gains by the print of a finger, mm.
+/// Expected gains by printing and measuring a finger, mm.
 struct Gain {
     column: usize,
     /// Increase of the largest expected range of all fingers.
@@ -186,7 +190,7 @@ impl Ranges {
         slopes
     }
 
-    /// Returns the gains by each finger that is not printed.
+    /// Returns the gains by printing each finger that is not printed.
     fn gains(&self, printed: &[usize]) -> Vec<Gain> {
         let gain = |column: usize| {
             let slopes = self.slopes(column);
@@ -217,7 +221,7 @@ impl Ranges {
     fn condition(&mut self, column: usize) {
         let slopes = self.slopes(column);
         let own = slopes[column].max(f64::MIN_POSITIVE);
-        // Scales the component along the measured range so that the covariances become those after it.
+        // Scales the component along the measured range so that the covariances become those given the measurement.
         let left = 1.0 - (self.noise2 / (self.noise2 + self.variance(column))).sqrt();
         for draw in &mut self.deviations {
             let part = draw[column] / own * left;
@@ -255,10 +259,11 @@ fn expected_maximum(mut lines: Vec<(f64, f64)>) -> f64 {
     envelope.iter().zip(ends).map(part).sum()
 }
 
-/// Smallest distance from all tried fingers at which a finger is informative, in standard deviations of the space.
+/// Smallest difference of a stiffness from those of all tried fingers at which a finger is informative, in standard
+/// deviations over the space.
 const INFORMATIVE: f64 = 0.7;
 
-/// Returns the reason to print a finger at this place after those tried.
+/// Returns the reason to print a finger of stiffness `own` after those tried.
 fn reason(
     own: StiffnessPoint,
     tried: &[StiffnessPoint],
@@ -315,7 +320,7 @@ mod tests {
     use ask_tell::stream::stream;
     use rand::RngExt;
 
-    /// Against the closed form of two lines and a sum over many quantiles.
+    /// Compares with the closed form for two lines, and with a sum over many quantiles for six.
     #[test]
     fn the_expected_maximum_is_that_of_the_upper_envelope() {
         let two = expected_maximum(vec![(0.0, 1.0), (2.0, 0.5)]);
@@ -331,7 +336,8 @@ mod tests {
         assert!((expected_maximum(lines.clone()) - sum / n as f64).abs() < 1e-4);
     }
 
-    /// Fingers 1 and 2 differ by an unknown `2 x`; finger 3 is narrow whatever `x` is, but moves by `4 x`.
+    /// The ranges of fingers 1 and 2, counted from 0, differ by an unknown `x`; that of finger 3 is small for any `x`,
+    /// but varies by `2 x`.
     #[test]
     fn a_narrow_finger_that_decides_between_two_is_printed_first() {
         let mut random = stream(0, 0, "two fingers");
@@ -347,13 +353,13 @@ mod tests {
             gains.iter().find(|gain| gain.column == column).map_or(0.0, |gain| gain.choice_mm)
         };
         assert!(value(&gains, 3) > 1.5 * value(&gains, 1), "{}", value(&gains, 1));
-        // Once it is known, little is left to learn from the others.
+        // Once finger 3 is measured, the others are worth little.
         let variance = ranges.variance(1);
         ranges.condition(3);
         assert!((ranges.variance(1) / variance - 0.25).abs() < 0.1, "{}", ranges.variance(1));
         let after = ranges.gains(&[0, 3]);
         assert!(value(&after, 1) < 0.5 * value(&gains, 1), "{}", value(&after, 1));
-        // A finger that inserts from no start pulls those down that vary with it, by their regression.
+        // A range of 0 mm lowers the means of correlated fingers by their regression.
         let mut ranges = Ranges::new(&drawn, 0.0);
         let before = ranges.means.clone();
         ranges.observe(1, 0.0);
@@ -366,7 +372,6 @@ mod tests {
     fn a_reason_says_on_which_side_of_the_tried_fingers_one_lies() {
         let all = [[-1.0, 0.0], [1.0, 0.0], [2.0, 0.0], [-2.0, 0.0], [0.0, 0.1], [1.1, 0.0]];
         let side = |finger: usize| side(all[finger], &all[..2]).unwrap_or_default();
-        // More of 1 / ky is softer.
         for (finger, words) in [(2, "(softer than"), (3, "(stiffer than"), (4, "(between earlier")]
         {
             assert!(side(finger).contains(words), "{finger}: {}", side(finger));

@@ -9,10 +9,10 @@ use insertion::finger::model::FingerModelKind;
 use serde::Deserialize;
 use study::StudyRecord;
 
-/// Simulated and measured ranges: columns of the last committed `validation.csv`.
+/// Simulated and measured ranges: some columns of the committed `results/reference/validation/validation.csv`.
 const VALIDATION: &str = include_str!("../../../data/simulated_ranges.csv");
 
-/// A rank correlation of simulated and measured ranges.
+/// Rank correlation of simulated and measured ranges.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RankCorrelation {
     /// Spearman's coefficient, +1 for the same order, -1 for the opposite one.
@@ -23,7 +23,7 @@ pub struct RankCorrelation {
     pub source: &'static str,
 }
 
-/// The robot of the committed validation; its fingers are the paper's.
+/// Robot of the committed validation, whose fingers are those of the paper.
 const VALIDATION_ROBOT: &str = "servo";
 
 /// Row of the committed validation.
@@ -34,7 +34,7 @@ struct ValidationRow {
     bench_range_mm: Option<f64>,
 }
 
-/// Returns the rank correlation on a task, of the study's own ranges if it simulated all measured fingers, else of the
+/// Returns the rank correlation on a task: of the study's own ranges if it simulated all measured fingers, else of the
 /// committed validation.
 pub fn rank_correlation(record: &StudyRecord, task: usize) -> Option<RankCorrelation> {
     let name = record.config.tasks().nth(task)?;
@@ -63,7 +63,7 @@ fn validation(task: &str) -> Vec<(f64, f64)> {
     own.filter_map(|row| row.range_mm.zip(row.bench_range_mm)).collect()
 }
 
-/// Returns the smallest and the largest mean of `|simulated - measured| / measured` of the tasks, percent.
+/// Returns the smallest and the largest over the tasks of the mean of `|simulated - measured| / measured`, percent.
 pub fn errors_percent() -> [f64; 2] {
     let errors = TASKS.iter().filter_map(|task| {
         let pairs = validation(task.name);

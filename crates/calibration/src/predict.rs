@@ -1,4 +1,4 @@
-//! Predictions of a posterior for fingers: means, intervals, joint draws.
+//! Predicted ranges of fingers, given posterior samples: means, intervals, joint draws.
 
 use super::bench::Bench;
 use super::process::{Conditioned, Finger, Hyperparameters, TERMS};
@@ -10,24 +10,24 @@ use rayon::prelude::*;
 
 /// Nominal coverage of the intervals.
 pub const INTERVAL: f64 = 0.8;
-/// Probability beyond either end.
+/// Probability beyond either end of an interval.
 const TAIL: f64 = (1.0 - INTERVAL) / 2.0;
 /// Number of random Fourier features of a draw of the process.
 const FEATURES: usize = 64;
-/// Largest number of draws until one satisfies the lower bounds of measured ranges.
+/// Largest number of draws until one satisfies the lower bounds of the ranges; the last draw is kept in any case.
 const TRIES: usize = 20;
 /// Degrees of freedom of the Matern 5/2 kernel's spectrum, a Student t.
 const FREEDOM: f64 = 5.0;
 /// Draws per sample of the posterior if there is no closed form.
 const DRAWS_PER_SAMPLE: usize = 5;
 
-/// Predicted range of a finger.
+/// Predicted range of a finger: mean and 80 % interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Predicted {
     pub mean_mm: f64,
     pub low_mm: f64,
     pub high_mm: f64,
-    /// Range by simulation alone, averaged over the posterior.
+    /// Emulated range without the discrepancy, averaged over the posterior.
     pub simulated_mm: f64,
 }
 
@@ -40,7 +40,7 @@ pub enum IntervalKind {
     Measurement,
 }
 
-/// Returns mean and interval of the range of each finger over the posterior.
+/// Returns mean and interval of the range of each finger over the posterior; `numbers` are the indices of the fingers.
 pub fn predict(
     bench: &Bench<'_>,
     posterior: &[Vec<f64>],
@@ -74,7 +74,7 @@ pub fn predict(
     numbers.par_iter().map(one).collect()
 }
 
-/// Returns the predictions from joint draws: with lower bounds of ranges there is no closed form.
+/// Returns the predictions of [`predict`] from joint draws, since lower bounds of ranges leave no closed form.
 fn from_draws(
     bench: &Bench<'_>,
     posterior: &[Vec<f64>],
@@ -109,7 +109,8 @@ fn from_draws(
     numbers.iter().enumerate().map(one).collect()
 }
 
-/// Returns a quantile of a mixture of normal distributions, by bisection.
+/// Returns a quantile of a mixture of normal distributions, by bisection; each part is mean, standard deviation,
+/// unused.
 fn quantile(parts: &[[f64; 3]], probability: f64) -> f64 {
     let wide = |sign: f64| parts.iter().map(move |[mean, sd, _]| mean + sign * 8.0 * sd);
     let mut low = wide(-1.0).fold(f64::INFINITY, f64::min);
@@ -124,7 +125,8 @@ fn quantile(parts: &[[f64; 3]], probability: f64) -> f64 {
     (low + high) / 2.0
 }
 
-/// Returns joint draws of the fingers' true ranges, mm: `each` vectors per sample of the posterior.
+/// Returns joint draws of the true ranges, mm, of the fingers with indices `numbers`: `each` vectors per posterior
+/// sample.
 pub fn draws(
     bench: &Bench<'_>,
     posterior: &[Vec<f64>],
@@ -151,7 +153,7 @@ pub fn draws(
     all
 }
 
-/// Draws from the posterior: a draw of the prior, conditioned on the measurements.
+/// Draws true ranges from the posterior, in units of the scale: a draw of the prior, conditioned on the measurements.
 fn draw(at: &Conditioned, fingers: &[Finger], random: &mut impl Rng) -> Vec<f64> {
     let prior = Discrepancy::drawn(&at.hyperparameters, random);
     let measured = at.fingers.iter().zip(&at.noises);
@@ -169,9 +171,11 @@ fn normal(random: &mut impl Rng) -> f64 {
 /// Prior draw of the discrepancy between bench and simulation: linear trends, and random Fourier features of the
 /// kernel (Rahimi and Recht 2007, Random features for large-scale kernel machines).
 struct Discrepancy {
+    /// Coefficients of the linear terms.
     terms: [f64; TERMS],
+    /// Amplitude of each feature.
     amplitude: f64,
-    /// Wave number along each axis, and phase.
+    /// Wave number along each axis, and phase of the cosine.
     features: Vec<[f64; 3]>,
 }
 

@@ -7,40 +7,42 @@
 //! y = 1 + a + (1 + r) (s(theta) - 1) + b1 / ky + b2 kz + d(ky, kz) + noise
 //! ```
 //!
-//! `s` is the simulated range; `a` an offset common to all fingers; `1 + r` is the share of the
+//! `s` is the simulated range at parameters `theta`; `a` an offset common to all fingers; `1 + r` is the share of the
 //! simulated differences that is real (Kennedy and O'Hagan's regression parameter); the
-//! stiffnesses are standardised over the space. A window widens by the deflection that a contact
-//! force makes, which is linear in `1 / ky`, and by the force that a preload makes, which is linear
-//! in `kz`. Offset, `r`, `b1` and `b2` are normal about 0 and integrated out; `d` is a Matern 5/2
-//! process.
+//! stiffnesses, lateral `ky` and in assembly direction `kz`, are standardised over the space. A window
+//! widens with the deflection under a contact force, proportional to `1 / ky`, and with the force of a
+//! preload, proportional to `kz`. Offset, `r`, `b1` and `b2` are normal about 0 and integrated out; `d`
+//! is a Matern 5/2 process.
 
 use ask_tell::process::{Process, distance2, matern52};
 use ask_tell::statistics::normal_log_cdf;
 use nalgebra::{DMatrix, DVector};
 
-/// Coordinates of a finger in the process: its standardised `1 / ky` and `kz`.
+/// Point of a finger in the process: its standardised `1 / ky` and `kz`.
 pub type StiffnessPoint = [f64; 2];
 
-/// Number of linear terms: offset, share of the simulated differences, `1 / ky`, `kz`.
+/// Number of linear terms: offset, `r`, `1 / ky`, `kz`.
 pub const TERMS: usize = 4;
 
 /// Number of coordinates of the sampler that determine the hyperparameters.
 pub const COORDINATES: usize = 5;
 
-/// Standard deviation of the offset between simulated and measured windows.
+/// Standard deviation of the offset `a`.
 const OFFSET_SD: f64 = 0.5;
 /// Standard deviation of `r`: simulated differences may also be irrelevant or opposite to measured ones.
 const SHARE_SD: f64 = 1.0;
-/// Median and logarithmic standard deviation of the standard deviation of a trend.
+/// Prior of the standard deviation of a trend, `b1` or `b2`: median and logarithmic standard deviation.
 const TREND: (f64, f64) = (0.1, 1.0);
-/// Median and logarithmic standard deviation of the standard deviation of the process.
+/// Prior of the standard deviation of the process: median and logarithmic standard deviation.
 const PROCESS: (f64, f64) = (0.05, 0.7);
-/// Median and logarithmic standard deviation of the length scale of the process.
+/// Prior of the length scale of the process: median and logarithmic standard deviation.
 const LENGTH_SCALE: (f64, f64) = (1.5, 0.4);
-/// Median and logarithmic standard deviation of the noise: two windows of one finger differ by some steps of 0.1 mm.
+/// Prior of the standard deviation of the noise: median and logarithmic standard deviation. Repeated measurements of a
+/// finger differ by a few steps of 0.1 mm.
 const NOISE: (f64, f64) = (0.05, 0.7);
 
-/// Hyperparameters: standard deviations in units of the task's scale, and the length scale of the process.
+/// Hyperparameters: standard deviations of linear terms, process and noise in units of the task's scale, and the length
+/// scale of the process.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hyperparameters {
     pub terms: [f64; TERMS],
@@ -51,7 +53,8 @@ pub struct Hyperparameters {
 }
 
 impl Hyperparameters {
-    /// Returns the hyperparameters at standard normal coordinates; `emulator` is the error of the emulator.
+    /// Returns the hyperparameters at standard normal coordinates; the error of the emulator, in units of the scale, is
+    /// added to the process.
     pub fn from_coordinates(z: &[f64], emulator: f64) -> Self {
         let at = |i: usize, (median, sd): (f64, f64)| median * libm::exp(sd * z[i]);
         Hyperparameters {
@@ -85,22 +88,23 @@ impl Finger {
     }
 }
 
-/// Bench conditioned on its measurements.
+/// Process of the discrepancy conditioned on the measurements of a bench.
 #[derive(Debug, Clone)]
 pub struct Conditioned {
     pub hyperparameters: Hyperparameters,
+    /// Measured fingers.
     pub fingers: Vec<Finger>,
-    /// Fingers with lower bounds of their ranges.
+    /// Fingers with lower bounds of their ranges, on which the process is not conditioned.
     pub bounds: Vec<(Finger, f64)>,
     /// Process of the discrepancies from the simulation; its kernel includes the linear terms.
     process: Process<0>,
-    /// Standard deviation of each measured value's noise.
+    /// Standard deviation of the noise of each measured range.
     pub noises: Vec<f64>,
 }
 
 impl Conditioned {
-    /// Conditions on fingers with their measured values and numbers of measurements, and on fingers with lower bounds;
-    /// `None` if their covariance is not positive definite.
+    /// Conditions on measured fingers with their ranges and numbers of measurements; `bounds` are fingers with lower
+    /// bounds. `None` if the covariance is not positive definite.
     pub fn new(
         hyperparameters: Hyperparameters,
         known: &[(Finger, f64, f64)],
@@ -131,13 +135,13 @@ impl Conditioned {
         self.process.log_likelihood() + self.bounds.iter().map(bound).sum::<f64>()
     }
 
-    /// Returns the covariances of a finger with the measured ones.
+    /// Returns the prior covariances of a finger's discrepancy with those of the measured fingers.
     fn cross_covariances(&self, finger: &Finger) -> DVector<f64> {
         let to = |known: &Finger| self.hyperparameters.covariance(known, finger);
         DVector::from_iterator(self.fingers.len(), self.fingers.iter().map(to))
     }
 
-    /// Returns mean and standard deviation of the true range of a finger.
+    /// Returns mean and standard deviation of the true range of a finger, in units of the scale.
     pub fn predict(&self, finger: &Finger) -> (f64, f64) {
         let k = self.cross_covariances(finger);
         let own = self.hyperparameters.covariance(finger, finger);

@@ -1,4 +1,4 @@
-//! Simulated tolerance windows for given values of the unmeasured parameters.
+//! Simulation of tolerance windows at given values of the unmeasured parameters.
 
 use input::units::MM;
 use insertion::evaluation::Evaluation;
@@ -18,11 +18,11 @@ use study::Cache;
 /// start that does.
 const SHIFTS_MM: [f64; 4] = [1.0, -1.0, 2.0, -2.0];
 
-/// Simulation of one task with some of its parameters set.
+/// Simulation of one task as a function of some of its parameters.
 pub struct Simulation<'a> {
     pub(super) evaluator: &'a Evaluator,
     pub(super) template: &'a Template,
-    /// Parameters that the task and the robot have, in the given order.
+    /// Parameters that are varied, in the given order.
     pub parameters: Vec<&'a Parameter>,
     /// Folder of the cache, if windows are cached.
     cache: Option<PathBuf>,
@@ -31,7 +31,7 @@ pub struct Simulation<'a> {
 }
 
 impl<'a> Simulation<'a> {
-    /// Creates a simulation with the parameters that the task and the robot have; the others are dropped.
+    /// Creates a simulation; parameters that neither the task nor the robot has are dropped.
     pub fn new(
         evaluator: &'a Evaluator,
         template: &'a Template,
@@ -43,8 +43,8 @@ impl<'a> Simulation<'a> {
         Simulation { evaluator, template, parameters, cache, stop }
     }
 
-    /// Simulates the window of a design. `shares` are the levels of the quantiles of the parameters' priors; if it is
-    /// empty, the values of the files are used.
+    /// Simulates the window of a design at `shares`, the levels of the quantiles of the parameters' priors (0 to 1); if
+    /// they are empty, with the values of the input files.
     pub fn window(&self, design: &Design, shares: &[f64]) -> Result<Evaluation, DesignError> {
         let values = self.parameters.iter().zip(shares).map(|(p, &share)| (*p, p.at(share)));
         let values: Vec<_> = values.collect();

@@ -1,4 +1,4 @@
-//! Subject of a calibration: a task with its fingers, their simulated ranges and their measurements.
+//! Subject of a calibration: a task with its fingers, their emulated ranges and their measurements.
 
 use super::bench::{Bench, Observation, Simulator};
 use super::emulator::{CalibrationError, Emulator, most_frequent};
@@ -14,9 +14,9 @@ use insertion::space::{Design, Space, Variable, is_of_task};
 use parameters::Parameter;
 use std::collections::BTreeSet;
 
-/// Largest number of fingers of a space that are all predicted; of a larger space, a designed set is predicted.
+/// Largest number of designs of a space that are all predicted; of a larger space, half as many Sobol points are.
 const MAX_FINGERS: u64 = 4000;
-/// Number of predicted strategies, over all printed fingers.
+/// Number of predicted strategies in total, shared equally among the printed fingers.
 const STRATEGIES: usize = 500;
 /// Number of nearest measured fingers from which the failure of a finger is predicted.
 const NEAREST: usize = 3;
@@ -24,13 +24,14 @@ const NEAREST: usize = 3;
 /// Task with its fingers and measurements.
 pub struct Subject {
     pub task: String,
-    /// Fingers: first those of the space, then other measured or published ones.
+    /// Designs of the fingers: first those of the space, then other measured or published ones.
     pub designs: Vec<Design>,
-    /// Number of fingers of the space.
+    /// Number of fingers of the space, which come first in `designs`.
     pub of_space: usize,
     pub emulator: Emulator,
     /// Measurements on this task, each with the index of its finger.
     pub experiments: Vec<(usize, Experiment)>,
+    /// Point of each finger in the process of the discrepancy.
     places: Vec<StiffnessPoint>,
     /// Position of each finger in the unit cube of the space, for the emulator.
     shares: Vec<Vec<f64>>,
@@ -39,7 +40,7 @@ pub struct Subject {
 }
 
 impl Subject {
-    /// Collects the fingers of a space, the measured fingers and those of `more`.
+    /// Collects the fingers of a space, the fingers measured on the task of the simulation, and those of `more`.
     pub fn new(
         simulation: &Simulation<'_>,
         space: &Space,
@@ -78,22 +79,25 @@ impl Subject {
         Ok(Subject { task, designs, of_space, emulator, experiments, places, shares, parameters })
     }
 
+    /// Returns the index of a design.
     pub fn finger(&self, design: &Design) -> Option<usize> {
         self.designs.iter().position(|known| known == design)
     }
 
+    /// Returns the indices of the measured fingers.
     pub fn measured(&self) -> BTreeSet<usize> {
         self.experiments.iter().map(|(number, _)| *number).collect()
     }
 
-    /// Returns the designs whose finger was printed, which differ from a measured one only in numbers of the task.
+    /// Returns the indices of the designs whose finger is printed: they differ from a measured design at most in
+    /// parameters of the task.
     pub fn printed(&self) -> BTreeSet<usize> {
         let shape = |number: usize| shape(&self.designs[number]);
         let known: Vec<Design> = self.measured().into_iter().map(shape).collect();
         (0..self.designs.len()).filter(|&number| known.contains(&shape(number))).collect()
     }
 
-    /// Returns the measured fingers without a range: they insert from no start.
+    /// Returns the indices of the measured fingers without a range, which inserted from no start.
     pub fn not_measurable(&self) -> BTreeSet<usize> {
         let has_range = |number: &usize| {
             self.experiments.iter().any(|(of, line)| of == number && line.extent().is_some())
@@ -101,8 +105,8 @@ impl Subject {
         self.measured().into_iter().filter(|number| !has_range(number)).collect()
     }
 
-    /// Returns the bench of the task, with the coordinates of its parameters and the first coordinate of its
-    /// hyperparameters.
+    /// Returns the bench of the task, given the indices of the coordinates of its parameters and of the first
+    /// coordinate of its hyperparameters in a posterior sample.
     pub fn bench(&self, parameters: Vec<usize>, first: usize) -> Bench<'_> {
         let observation = |&(finger, ref line): &(usize, Experiment)| {
             let (range_mm, at_least) = line.extent()?;
@@ -119,8 +123,8 @@ impl Subject {
         }
     }
 
-    /// Returns the failure at either end: the most frequent of the nearest measured fingers, else of the nearest
-    /// simulations.
+    /// Returns the predicted failure at each end of the window: the most frequent one of the nearest measured fingers,
+    /// else of the nearest simulations.
     pub fn failures(&self, finger: usize) -> [Option<FailureClass>; 2] {
         let distance = |(number, _): &(usize, Experiment)| {
             distance2(&self.places[finger], &self.places[*number])
@@ -142,7 +146,7 @@ impl Simulator for Subject {
     }
 }
 
-/// Returns all designs of a space, or a designed set of a large space.
+/// Returns all designs of a space, or Sobol points of a large one.
 fn fingers(space: &Space) -> Vec<Design> {
     // Reversed, so that the first parameter changes first.
     let grid = Grid::new(space.levels().into_iter().rev().collect());
@@ -153,7 +157,8 @@ fn fingers(space: &Space) -> Vec<Design> {
     grid.points().map(design).collect()
 }
 
-/// Returns strategies for each printed finger, if the space changes the task: a designed set.
+/// Returns designs that combine each printed finger with Sobol points of the strategy; none if the space does not
+/// change the task.
 fn strategies<'a>(space: &Space, printed: impl Iterator<Item = &'a Design>) -> Vec<Design> {
     if !space.changes_task() {
         return Vec::new();
@@ -171,20 +176,21 @@ fn strategies<'a>(space: &Space, printed: impl Iterator<Item = &'a Design>) -> V
     fingers.iter().flat_map(|shape| set.iter().map(move |one| with(shape, one))).collect()
 }
 
-/// Returns a design without numbers of the task.
+/// Returns a design without the parameters of the task: the finger alone.
 fn shape(design: &Design) -> Design {
     let of_finger = design.0.iter().filter(|(key, _)| !is_of_task(key));
     Design(of_finger.map(|(key, value)| (key.clone(), *value)).collect())
 }
 
-/// Returns a designed set of `count` designs; `purpose` names its random stream.
+/// Returns `count` designs at Sobol points of the space; `purpose` names the random stream.
 fn designed(space: &Space, count: usize, purpose: &str) -> Vec<Design> {
     let grid = Grid::new(space.levels());
     let set = SobolSequence::new(grid.dimension(), 0, 0, purpose).take(count);
     set.map(|shares| space.design(&grid.cell(&shares))).collect()
 }
 
-/// Returns a measured design with all parameters of the space; missing values are those of the task file.
+/// Returns a measured design with all parameters of the space; missing values are those of the task file, else the
+/// middle of the bounds.
 pub fn completed(
     space: &Space,
     template: &Template,
@@ -213,7 +219,7 @@ pub fn completed(
     Ok(design)
 }
 
-/// Standardises rows by mean and standard deviation of the first `reference` rows.
+/// Standardises each column by mean and standard deviation of its first `reference` rows.
 fn standardised(rows: &[[f64; 2]], reference: usize) -> Vec<StiffnessPoint> {
     let scale = [0, 1].map(|axis| {
         let moments = Moments::of(rows.iter().take(reference).map(|row| row[axis]));

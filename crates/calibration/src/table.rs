@@ -10,15 +10,16 @@ use serde::Serialize;
 use serde_json::{Value, json};
 use study::{BenchEffort, BenchFinger, BenchPrediction, Provenance};
 
-/// Standard deviation of a coordinate below which, and magnitude of its mean above which, it counts as moved (prior: 1
-/// and 0).
+/// Posterior standard deviation of a coordinate below which, and magnitude of its mean above which, the measurements
+/// are informative about it (prior: 1 and 0).
 const MOVED: (f64, f64) = (0.75, 0.5);
-/// Mean deviation of the fingers left out above which predictions are not relied on, percent.
+/// Mean deviation of the leave-one-out predictions, percent, above which there is a warning.
 const MISSED: f64 = 50.0;
-/// Correlation at which two parameters cannot be told apart.
+/// Magnitude of the posterior correlation above which two parameters are confounded.
 const CONFOUNDED: f64 = 0.5;
 
-/// Effect of the measurements on a parameter: the 10th, 50th and 90th percentile before and after, in its own unit.
+/// Effect of the measurements on a parameter: the 10th, 50th and 90th percentile of prior and posterior, in the unit of
+/// the parameter.
 #[derive(Debug, Clone, Serialize)]
 pub struct ParameterUpdate {
     pub name: String,
@@ -29,7 +30,7 @@ pub struct ParameterUpdate {
     pub posterior_low: f64,
     pub posterior_median: f64,
     pub posterior_high: f64,
-    /// Whether the measurements shifted or narrowed its distribution.
+    /// Whether the measurements shifted or narrowed its distribution considerably.
     pub moved: bool,
 }
 
@@ -59,7 +60,7 @@ fn coordinate(calibration: &Calibration, i: usize) -> Vec<f64> {
     calibration.posterior.iter().map(|state| state[i]).collect()
 }
 
-/// Two parameters that the measurements cannot tell apart.
+/// Two confounded parameters: the measurements determine a combination of them only.
 #[derive(Debug, Clone, Serialize)]
 pub struct Confounded {
     /// Names of the parameters.
@@ -68,7 +69,7 @@ pub struct Confounded {
     pub correlation: f64,
 }
 
-/// Returns the pairs of parameters that the measurements cannot tell apart.
+/// Returns the pairs of confounded parameters.
 pub fn confounded(calibration: &Calibration) -> Vec<Confounded> {
     let names = &calibration.layout.coordinates;
     let pairs = (0..names.len()).flat_map(|i| (0..i).map(move |j| [j, i]));
@@ -94,7 +95,7 @@ pub fn warnings(subject: &Subject, result: &TaskResult) -> Vec<String> {
              before you rely on a prediction"
         ));
     }
-    // By chance fewer than half of five or more fall inside in 1 case of 20.
+    // Of five or more fingers, fewer than half lie inside 80 % intervals by chance in at most 6 % of the cases.
     if accuracy.fingers >= 5 && 2 * accuracy.inside < accuracy.fingers {
         lines.push(format!(
             "the intervals are too narrow: only {} of {} left-out fingers lie inside theirs",
@@ -166,7 +167,7 @@ pub fn predictions_csv(subject: &Subject, result: &TaskResult) -> String {
     text
 }
 
-/// Returns `leave_one_out.csv`: each measured finger and its range as predicted without it.
+/// Returns `leave_one_out.csv`: each measured finger with its leave-one-out prediction.
 pub fn left_out_csv(calibration: &Calibration, subjects: &[Subject]) -> String {
     let head =
         format!("task,{DENSITY_KEY},{DIRECTION_KEY},measured_mm,range_mm,low_mm,high_mm,inside\n");
@@ -186,7 +187,7 @@ pub fn left_out_csv(calibration: &Calibration, subjects: &[Subject]) -> String {
     head + &lines.collect::<String>()
 }
 
-/// Returns `parameters.csv`: the percentiles of each parameter before and after.
+/// Returns `parameters.csv`: the percentiles of prior and posterior of each parameter.
 pub fn parameters_csv(calibration: &Calibration) -> String {
     let head = "parameter,task,prior_low,prior_median,prior_high,posterior_low,posterior_median,posterior_high,moved,source\n";
     let line = |(one, coordinate): (ParameterUpdate, &Coordinate)| {
@@ -203,7 +204,7 @@ pub fn parameters_csv(calibration: &Calibration) -> String {
     head.to_owned() + &lines.collect::<String>()
 }
 
-/// Number of best fingers that a study stores.
+/// Number of fingers that a study stores, those with the largest predicted ranges.
 const BEST_FINGERS: usize = 5;
 
 /// Returns the fingers of the space by their predicted ranges, best first.

@@ -1,4 +1,4 @@
-//! Made-up benches, whose truth is known.
+//! Tests on synthetic benches, whose true ranges and parameters are known.
 
 use super::bench::{Bench, Observation, Settings, Simulator, sampled};
 use super::predict::{IntervalKind, Predicted, draws, predict};
@@ -14,7 +14,7 @@ const SCALE_MM: f64 = 5.0;
 const SETTINGS: Settings<'_> =
     Settings { warm_up: 200, samples: 150, thin: 3, seed: 0, stop: &NEVER, done: &|_| () };
 
-/// A simulator of two parameters, the first of which turns the order of the fingers.
+/// Simulator with two parameters; the first can reverse the order of the fingers.
 struct MadeUp {
     places: Vec<StiffnessPoint>,
 }
@@ -50,17 +50,17 @@ fn posterior(bench: &Bench<'_>, random: &mut impl Rng) -> Vec<Vec<f64>> {
     sampled(std::slice::from_ref(bench), 2 + COORDINATES, &SETTINGS, random)
 }
 
-/// One made-up bench after its calibration.
+/// Result of the calibration of one synthetic bench.
 struct Outcome {
     hidden: [f64; 2],
     posterior: Vec<Vec<f64>>,
     truth: Vec<f64>,
-    /// The fingers that were not measured, and what is predicted of them.
+    /// Fingers that were not measured, with their predictions.
     predicted: Vec<(usize, Predicted)>,
 }
 
-/// Every other finger is measured. `discrepancy` and `noise` are standard deviations in units of
-/// the scale; the discrepancy is an offset, a trend and a wave that the model does not have.
+/// Calibrates a synthetic bench on every other finger. `discrepancy` and `noise` are standard deviations in units of
+/// the scale; the discrepancy is an offset, a trend and a sine wave, which the simulator does not have.
 fn calibrated(number: u64, discrepancy: f64, noise: f64) -> Outcome {
     let simulator = MadeUp::new();
     let mut random = stream(number, 0, "truth");
@@ -91,7 +91,7 @@ fn moments(values: impl Iterator<Item = f64>) -> (f64, f64) {
     (moments.mean, moments.deviation())
 }
 
-/// Percent of the unmeasured fingers whose truth lies in the interval.
+/// Returns the percentage of the unmeasured fingers whose true range lies in the interval.
 fn coverage_percent(outcomes: &[Outcome]) -> f64 {
     let all =
         || outcomes.iter().flat_map(|o| o.predicted.iter().map(move |(i, p)| (o.truth[*i], p)));
@@ -109,7 +109,7 @@ fn the_simulator_with_hidden_parameters_is_found_again() {
         (mean - outcome.hidden[i]).abs() > 2.0 * sd
     };
     let far = outcomes.iter().flat_map(|o| [beyond(o, 0), beyond(o, 1)]).filter(|far| *far).count();
-    // Of 60 numbers 3 lie beyond two standard deviations; 8 or more do once in 150 times.
+    // Of 60 parameters 3 are expected beyond two standard deviations; 8 or more have a probability of 1 in 150.
     assert!(far < 8, "{far} of 60 hidden parameters beyond two standard deviations");
 }
 
@@ -132,8 +132,8 @@ fn a_discrepancy_outside_the_model_is_predicted_better_than_by_simulation() {
     assert!((75.0..=85.0).contains(&coverage), "{coverage} % of the truths inside");
 }
 
-/// All fingers alike, and noise of a fifth of the range: the parameters stay where they were,
-/// and no finger's interval is narrower than the noise of ten measurements allows.
+/// All true ranges are equal, with noise of a fifth: the posterior of the parameters stays as wide as the prior, and no
+/// interval is narrower than the standard error of ten measurements allows.
 #[test]
 fn pure_noise_narrows_nothing() {
     let simulator = MadeUp::new();
@@ -153,7 +153,7 @@ fn pure_noise_narrows_nothing() {
         let least = 0.9 * 2.0 * 1.28 * scatter / 10_f64.sqrt();
         assert!(interval.high_mm - interval.low_mm > least, "{interval:?}");
     }
-    // The prior's is 1.
+    // The standard deviation of the prior is 1.
     let (spread, _) = moments(spreads.into_iter());
     assert!(spread > 0.85, "standard deviations of the parameters became {spread}");
 }
@@ -177,7 +177,7 @@ fn a_range_known_from_below_lifts_its_finger_and_draws_keep_to_it() {
     assert!(mean[1] > mean[0] + 0.1, "{mean:?}");
 }
 
-/// Draws given the measurements have the mean and the spread that the formulas say.
+/// Draws given the measurements have the mean and the standard deviation of the closed form.
 #[test]
 fn draws_agree_with_the_formulas() {
     let simulator = MadeUp::new();

@@ -1,4 +1,4 @@
-//! Faulty logs of hidden cells: each fault draws a remark with its likely cause, and clean logs draw none.
+//! Logs of simulated cells with a fault each: the checks report its likely cause, and nothing for logs without a fault.
 
 use ask_tell::normal::StandardNormal;
 use ask_tell::stream::stream;
@@ -22,9 +22,9 @@ use nalgebra::Vector3;
 use rand::RngExt;
 use rayon::prelude::*;
 
-/// Numbers of a cell and starts of its attempts, from the table of the reference.
+/// True parameters of each cell and starts of its attempts, from the reference results.
 const CELLS: &str = include_str!("../../../results/reference/identify/truth.csv");
-/// Parameters that are drawn, as in the reference, and their columns there.
+/// Parameters that differ between the cells, and their columns in [`CELLS`].
 const HIDDEN: [(&str, &str); 5] = [
     ("friction plug-socket", "friction_plug_socket"),
     ("stiffness of the flange", "flange_stiffness_factor"),
@@ -35,7 +35,7 @@ const HIDDEN: [(&str, &str); 5] = [
 
 /// Time between two samples, s.
 const EVERY_S: f64 = 2e-3;
-/// Mass of what hangs on the sensor, kg.
+/// Mass below the force sensor, kg.
 const TOOL_KG: f64 = 1.0;
 
 /// A log as a table: a row for each sample.
@@ -79,8 +79,8 @@ fn template(evaluator: &Evaluator, cell: u64) -> &Template {
     &evaluator.templates[(cell + 1) as usize % 2]
 }
 
-/// The logs of a cell: a probe and three attempts of each of two fingers, as a sensor with noise, bias and
-/// drift shows them that carries 1 kg.
+/// Returns the logs of a cell: a probe and three attempts of each of two fingers, as measured by a sensor with noise,
+/// bias and drift above a tool of 1 kg.
 fn recorded(evaluator: &Evaluator, cell: u64) -> Vec<Recorded> {
     let (template, priors) = (template(evaluator, cell), bench());
     let mut lines = CELLS.lines();
@@ -131,7 +131,7 @@ fn recorded(evaluator: &Evaluator, cell: u64) -> Vec<Recorded> {
     all
 }
 
-/// Adds what the sensor carries, its noise, bias and drift.
+/// Adds the inertial force of the tool, and noise, bias and drift of the sensor.
 fn sense(log: &mut Log, cell: u64, number: u64) {
     let mut random = stream(cell, number, "sensor");
     let mut normal =
@@ -164,10 +164,10 @@ fn swapped(table: &mut Table, pairs: &[[usize; 2]]) {
     table.iter_mut().for_each(|row| pairs.iter().for_each(|&[a, b]| row.swap(a, b)));
 }
 
-/// What is said of forces in a larger unit.
+/// Remarks on forces in a larger unit than newtons.
 const TOO_SMALL: [&str; 2] = ["the forces look too small", "in another unit than newtons"];
 
-/// A fault, and words of a remark or an error with its likely cause, of which one is enough.
+/// Faults: name, change of the table, and parts of the expected remark or error, of which one must occur.
 const FAULTS: [(&str, Change, &[&str]); 26] = [
     (
         "targets in metres",
@@ -218,7 +218,7 @@ const FAULTS: [(&str, Change, &[&str]); 26] = [
     ),
 ];
 
-/// Remarks on the logs after a change, or the error.
+/// Returns the remarks on the logs after a change, or the error.
 fn said(
     evaluator: &Evaluator,
     cell: u64,
@@ -260,7 +260,7 @@ fn clean_logs_draw_no_remark() {
     });
 }
 
-/// Asserts that each fault draws its cause in nine of ten of these cells.
+/// Asserts that the cause of each fault is reported in at least nine of ten of these cells.
 fn each_fault_draws_its_cause_in(cells: std::ops::RangeInclusive<u64>) {
     let evaluator = evaluator();
     let cells: Vec<_> =

@@ -20,7 +20,7 @@ type Parser<T> = fn(&str) -> Result<T, String>;
 pub(crate) struct Cells<'a> {
     pub(super) header: &'a StringRecord,
     pub(super) record: &'a StringRecord,
-    /// The file as given.
+    /// Path of the file as given.
     pub(super) file: &'a str,
     pub(crate) line: u64,
     pub(super) problems: Vec<InputError>,
@@ -43,7 +43,7 @@ impl<'a> Cells<'a> {
         if self.text(column).is_empty() { None } else { self.read(column, value) }
     }
 
-    /// Records a problem; the name of the column may be empty.
+    /// Records a problem; `column` is empty if it concerns the whole line.
     pub(crate) fn problem(&mut self, column: &str, words: &str) {
         let place = Place::file(self.file).line(self.line as usize).key(column);
         self.problems.push(place.fault(words));
@@ -66,7 +66,7 @@ pub(super) fn is_of_space(name: &str) -> bool {
     name.starts_with("task.") || name.starts_with("finger.")
 }
 
-/// Parses and checks a line; problems are recorded in `cells`.
+/// Parses and checks a line; problems are recorded in `cells`. `before` are the preceding lines.
 pub(super) fn experiment(cells: &mut Cells<'_>, before: &[Experiment]) -> Experiment {
     let task = cells.text("task").to_owned();
     if task.is_empty() {
@@ -95,13 +95,13 @@ pub(super) fn experiment(cells: &mut Cells<'_>, before: &[Experiment]) -> Experi
         cells.problem("task", &words);
     }
     let ends = experiment.positive_mm.zip(experiment.negative_mm);
-    // Without the rounding error of the subtraction.
+    // Removes the rounding error of the subtraction.
     let width = |(positive, negative): (f64, f64)| ((positive - negative) * 1e6).round() / 1e6;
     experiment.range_mm = experiment.range_mm.or(ends.map(width));
     experiment
 }
 
-/// Checks that the window contains the start from which it is measured and is as wide as the range.
+/// Checks that the window contains 0, the task's start, and is as wide as the range.
 fn check_window(cells: &mut Cells<'_>, experiment: &Experiment) {
     let &Experiment { negative_mm, positive_mm, range_mm, .. } = experiment;
     for (column, end, right) in [
@@ -150,11 +150,11 @@ fn duplicate(new: &Experiment, before: &[Experiment]) -> Option<String> {
     ))
 }
 
-/// Largest length that is accepted as millimetres: larger than the tolerance of any connector.
+/// Largest length, mm; a larger one is taken for micrometres.
 pub const LARGEST_LENGTH_MM: f64 = 100.0;
-/// Smallest length other than 0, mm: finer than the resolution of starts.
+/// Smallest length other than 0, mm, below the resolution of the starts; a smaller one is taken for metres.
 const LEAST_MM: f64 = 0.02;
-/// Largest force that is accepted as newtons.
+/// Largest force, N; a larger one is taken for millinewtons.
 pub const LARGEST_FORCE_N: f64 = 5000.0;
 
 fn number(text: &str) -> Result<f64, String> {
@@ -164,6 +164,7 @@ fn number(text: &str) -> Result<f64, String> {
     }
 }
 
+/// Parses an infill density, percent.
 fn density(text: &str) -> Result<f64, String> {
     match number(text)? {
         share if share > 0.0 && share < 1.0 => {
@@ -174,6 +175,7 @@ fn density(text: &str) -> Result<f64, String> {
     }
 }
 
+/// Parses an infill direction, degrees.
 fn direction(text: &str) -> Result<f64, String> {
     match number(text)? {
         radians if radians.fract() != 0.0 && radians.abs() < 1.6 => Err(format!(
@@ -185,6 +187,7 @@ fn direction(text: &str) -> Result<f64, String> {
     }
 }
 
+/// Parses a length, mm.
 pub(crate) fn length(text: &str) -> Result<f64, String> {
     match number(text)? {
         long if long.abs() > LARGEST_LENGTH_MM => {
@@ -208,6 +211,7 @@ fn range(text: &str) -> Result<Option<f64>, String> {
     }
 }
 
+/// Parses the number of a failure class.
 pub(crate) fn failure(text: &str) -> Result<FailureClass, String> {
     let class = text.parse::<u8>().ok().and_then(|number| FailureClass::try_from(number).ok());
     let known = FailureClass::ALL.map(|class| format!("{} ({})", class.number(), class.label()));
@@ -222,6 +226,7 @@ fn repeats(text: &str) -> Result<u32, String> {
     }
 }
 
+/// Parses a peak force, N.
 fn force(text: &str) -> Result<f64, String> {
     match number(text)? {
         large if large > LARGEST_FORCE_N => {

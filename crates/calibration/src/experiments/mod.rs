@@ -17,7 +17,7 @@ use serde::Serialize;
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
-/// Text in `range_mm` for a finger that was tested without a measurable range.
+/// Text in `range_mm` for a finger that was tested but inserted from no start.
 pub const NOT_MEASURABLE: &str = "not measurable";
 
 /// Columns in the order of a new file; further columns are keys of a space file.
@@ -45,7 +45,7 @@ pub fn own_task(name: &str, path: &str) -> String {
     format!("{OWN_TASK}{name}: {path}\n")
 }
 
-/// Returns the user's tasks with the paths of their files; the last comment line of a task counts.
+/// Returns the user's tasks with the paths of their files; of several comment lines of a task, the last one applies.
 pub fn own_tasks(text: &str) -> BTreeMap<&str, &str> {
     // Spreadsheets pad lines with commas.
     let named = comments(text).filter_map(|line| line.strip_prefix(OWN_TASK)?.split_once(": "));
@@ -85,16 +85,16 @@ impl Placed for Problems {
     }
 }
 
-/// Line of a measurement file: a finger on a task; its fields have the keys of `--json`.
+/// Line of a measurement file: a finger on a task; the fields are the keys of `--json`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Experiment {
     pub line: u64,
     pub task: String,
-    /// Most negative start that inserted, mm.
+    /// Most negative shift of the start from which it inserted, mm.
     pub negative_mm: Option<f64>,
-    /// Most positive start that inserted, mm.
+    /// Most positive shift of the start from which it inserted, mm.
     pub positive_mm: Option<f64>,
-    /// Tolerable range, if it was measured as a whole, mm.
+    /// Width of the tolerance window, as given or between both ends, mm.
     pub range_mm: Option<f64>,
     /// Failure below the window.
     pub failure_negative: Option<FailureClass>,
@@ -112,10 +112,10 @@ pub struct Experiment {
 }
 
 impl Experiment {
-    /// Returns the tolerable range, mm, and whether it is only a lower bound.
+    /// Returns the range, mm, and whether it is only a lower bound.
     ///
-    /// A window contains the start from which it is measured, so that one end alone is a lower bound:
-    /// "inserts at +1.5 mm" is a range of 1.5 mm or more.
+    /// The window contains 0, the task's start, so that one end alone gives a lower bound: "inserts at +1.5 mm" means a
+    /// range of at least 1.5 mm.
     pub fn extent(&self) -> Option<(f64, bool)> {
         match (self.range_mm, self.negative_mm, self.positive_mm) {
             (Some(range), ..) => Some((range, false)),
@@ -124,9 +124,9 @@ impl Experiment {
         }
     }
 
-    /// Compares lines by task, finger and date, the order in which they are used whatever their order in the file.
+    /// Compares lines by task, finger and date, so that results do not depend on their order in the file.
     pub fn order(&self, other: &Self) -> Ordering {
-        // No two lines of a file agree in all of these; the numbers of a design are finite.
+        // The parser rejects lines that agree in all of these, and numbers that are not finite.
         let own = (&self.task, &self.design.0, &self.date);
         let order = own.partial_cmp(&(&other.task, &other.design.0, &other.date));
         order.unwrap_or(Ordering::Equal)
@@ -169,7 +169,7 @@ pub(crate) struct Columns<'a> {
     pub all: &'a [&'a str],
     /// Number of required columns.
     pub required: usize,
-    /// Purpose of the required columns, for errors.
+    /// Reason why columns are required, for errors.
     pub why: &'a str,
 }
 

@@ -1,5 +1,5 @@
-//! Checks that commanded motion, measured motion and force of the logs agree with each other and with the task. They
-//! find columns that are mirrored, swapped or in another unit, and two attempts in one log.
+//! Checks that commanded motion, measured motion and force of the logs agree with each other and with the task: they
+//! detect columns that are mirrored, swapped or in another unit, and two attempts in one log.
 
 use super::check::{Remark, Remarks};
 use super::curves::Curves;
@@ -9,18 +9,19 @@ use input::units::MM;
 use insertion::task::{Stage, Task};
 use nalgebra::{Vector2, Vector3};
 
-/// Mean distance between two paths below which they agree, m.
+/// Smallest mean change of the positions by a correction, m; a smaller one cannot be told from errors of the motion.
 const AGREES: f64 = 0.5 * MM;
-/// Smallest reduction of the distance by a correction, as a share of the change that it makes.
+/// Smallest reduction of the mean distance by a correction, as a fraction of the mean change of the positions.
 const CORRECTS: f64 = 0.5;
-/// Smallest length of a path that is compared with the task's search, as a share of the length of that.
+/// Smallest length of a recorded path that is compared with the task's path, as a fraction of the task's.
 const COMPLETE: f64 = 0.7;
-/// Smallest rise before a second attempt, as a share of the descent to the touch, and smallest such descent, m.
+/// Smallest rise that counts as the end of an attempt, as a fraction of the descent to the touch; smallest descent, m,
+/// for which this is checked.
 const RISES: (f64, f64) = (0.5, 1.0 * MM);
-/// Smallest increase, by a correction, of the share of the force that the springs of the robot explain.
+/// Smallest increase of [`explained`] by a correction.
 const EXPLAINS: f64 = 0.5;
 
-/// Correction of a vector.
+/// Correction of a position or force, with the columns in the right order and sign.
 type Correction = fn(Vector3<f64>) -> Vector3<f64>;
 const MIRRORED_X: Correction = |v| Vector3::new(-v.x, v.y, v.z);
 const MIRRORED_Y: Correction = |v| Vector3::new(v.x, -v.y, v.z);
@@ -29,31 +30,32 @@ const MIRRORED_X_AND_Y: Correction = |v| Vector3::new(-v.x, -v.y, v.z);
 /// Mistake in the columns of a vector: its likely cause, and its correction.
 type Mistake = (&'static str, Correction);
 
-/// Mistakes in x and y.
+/// Mistakes in the horizontal axes, x and y.
 const OVER_TABLE: [Mistake; 4] = [
     ("x looks mirrored", MIRRORED_X),
     ("y looks mirrored", MIRRORED_Y),
     ("x and y look mirrored", MIRRORED_X_AND_Y),
     ("x and y look swapped", |v| v.yxz()),
 ];
-/// Mistakes in z.
+/// Mistakes that involve the vertical axis, z.
 const IN_HEIGHT: [Mistake; 3] = [
     ("z looks mirrored", |v| Vector3::new(v.x, v.y, -v.z)),
     ("x and z look swapped", |v| v.zyx()),
     ("y and z look swapped", |v| v.xzy()),
 ];
+/// Commanded positions in metres.
 const METRES: Mistake = ("the commanded positions look like metres; give millimetres", |v| v * 1e3);
 
-/// Position, its expected value, and the weight of the pair.
+/// Position, its expected value, m, and the weight of the pair in the mean.
 type Pair = (Vector3<f64>, Vector3<f64>, f64);
 
 /// Comparison of positions with their expected values.
 struct Comparison {
-    /// Mean distance, m.
+    /// Weighted mean distance in the 1-norm, m.
     distance: f64,
-    /// Mean distance after the best correction, if that is smaller, m.
+    /// The same after the best correction, if that is smaller, m.
     corrected: f64,
-    /// Mistake that explains the distance.
+    /// Likely cause of the distance, if a correction reduces it enough.
     mistake: Option<&'static str>,
 }
 
@@ -115,7 +117,7 @@ fn commanded(remarks: &mut Remarks<'_>) {
     }
 }
 
-/// Path in x and y: the length up to each point, and its position relative to the first one.
+/// Path in x and y: the arc length up to each point, and its position relative to the first one, m.
 type PlanarPath = Vec<(f64, Vector2<f64>)>;
 
 fn planar_path(places: impl Iterator<Item = Vector3<f64>>) -> PlanarPath {
@@ -128,7 +130,7 @@ fn planar_path(places: impl Iterator<Item = Vector3<f64>>) -> PlanarPath {
     std::iter::once(Vector3::zeros()).chain(places).map(step).collect()
 }
 
-/// Returns the position on a path at a length.
+/// Returns the position on a path at an arc length, m; at its end beyond it.
 fn position_at(path: &PlanarPath, length: f64) -> Vector2<f64> {
     let next = path.partition_point(|(at, _)| *at < length).max(1);
     let (from, begin) = path[next - 1];
@@ -136,7 +138,8 @@ fn position_at(path: &PlanarPath, length: f64) -> Vector2<f64> {
     begin + (end - begin) * ((length - from) / (to - from).max(f64::MIN_POSITIVE))
 }
 
-/// Adds a remark if the path in x and y disagrees with the task's search, from its start or the end of its approach.
+/// Adds a remark if the path in x and y disagrees with the path of the task, where the log may begin at the start of
+/// the task or after its approach.
 fn search(remarks: &mut Remarks<'_>, task: &Task) {
     let phases = &task.strategy.phases;
     let near = phases.iter().take_while(|phase| phase.stage == Stage::Approach).count();
@@ -191,8 +194,7 @@ const IN_FORCE: [Mistake; 5] = [
     ("along x and y; fx_n and fy_n look swapped", |v| v.yxz()),
 ];
 
-/// Returns a remark if the robot does not give way in the direction of the force, over all attempts; `file` lists the
-/// runs.
+/// Returns a remark if the robot does not deflect in the direction of the force; `file` is the table of the runs.
 pub(super) fn springs(file: &str, attempts: &[Curves]) -> Option<Remark> {
     let score = |corrected: Correction| {
         let with = |one: &Curves| {
@@ -208,7 +210,7 @@ pub(super) fn springs(file: &str, attempts: &[Curves]) -> Option<Remark> {
     (best - explained(attempts) > EXPLAINS).then_some(remark)
 }
 
-/// Returns a remark on a probe with negative friction, whose force drives the slides.
+/// Returns a remark if the friction of a probe is negative: the force along y then drives the slides.
 pub(super) fn slides((file, found): &(String, Friction)) -> Option<Remark> {
     let friction = found.coefficient.map(|one| one.mean).filter(|mean| *mean < 0.0)?;
     let text = format!(

@@ -14,17 +14,19 @@ use std::ops::Range;
 
 /// Lowest sampling rate, Hz: six samples in a search stroke of 60 ms.
 const SLOWEST_HZ: f64 = 100.0;
-/// Gap between samples that counts as a step of the clock, in median gaps.
+/// Smallest time between two samples that counts as a gap in the log, in medians of that time.
 const STEP: f64 = 5.0;
-/// Saturated sensor: smallest number of consecutive samples at an extreme force, and that force beyond the bias, N.
+/// Saturation of the sensor: smallest number of consecutive samples at the largest or smallest force of the log, and
+/// smallest deviation of that force from the bias, N.
 const SATURATED: (usize, f64) = (10, 10.0);
-/// Bias, N, and drift, N/s, above which a remark is made.
+/// Bias of the force, N, and its drift, N/s, above which a remark is made.
 const DRIFT: (f64, f64) = (5.0, 7.0);
 /// Largest distance of the first position from the task's start, m.
 const ASTRAY: f64 = 30.0 * MM;
 /// Largest difference of the tilt from the task's, rad.
 const TILTED: f64 = 2.0 * DEG;
-/// Largest motion of a pose that counts as standing still, and smallest motion of its target in the meantime, m.
+/// Largest motion of a pose that counts as a standstill, and smallest motion of its target in the meantime for a
+/// remark, m.
 const STILL: (f64, f64) = (1e-6, 1e-3);
 /// Interval after a touch over which its force is averaged, s: a soft robot oscillates at first.
 const TOUCH_S: [f64; 2] = [0.02, 0.5];
@@ -37,12 +39,12 @@ const SCALED: f64 = 3.0;
 /// Remark on a log.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Remark {
-    /// The log's file as given.
+    /// Path of the log as given; the table of the runs for a remark on all logs.
     #[serde(rename = "log")]
     pub file: String,
     /// First and last line concerned; `None` for the whole log.
     pub lines: Option<[usize; 2]>,
-    /// A sentence without file and lines.
+    /// Sentence for the user, without the file and the lines.
     pub text: String,
     /// Whether results from this log would be wrong.
     pub serious: bool,
@@ -66,7 +68,7 @@ pub(super) struct Remarks<'a> {
 }
 
 impl Remarks<'_> {
-    /// Adds a remark on the samples from the first to the second index.
+    /// Adds a remark on a span of samples, given by its first and last index; `None` for the whole log.
     pub(super) fn add(&mut self, serious: bool, span: Option<[usize; 2]>, text: impl Into<String>) {
         let last = self.log.samples.len() - 1;
         let lines = span.map(|ends| ends.map(|at| self.log.samples[at.min(last)].line));
@@ -95,8 +97,8 @@ fn of_log(run: &Run, task: &Task, rotated: bool) -> Vec<Remark> {
     remarks.found
 }
 
-/// Returns a remark on forces in another unit; `ratio` is the ratio of the measured forces to the simulated forces of
-/// the fingers along the measured path, `file` is the table of the runs.
+/// Returns a remark if the forces are in another unit than newtons: if `ratio`, of measured to simulated forces along
+/// the measured path, is far from 1. `file` is the table of the runs.
 pub(super) fn force_scale(file: &str, ratio: f64) -> Option<Remark> {
     let factor = ratio.max(1.0 / ratio);
     let [size, times] = if ratio < 1.0 { ["small", "smaller"] } else { ["large", "larger"] };
@@ -107,7 +109,7 @@ pub(super) fn force_scale(file: &str, ratio: f64) -> Option<Remark> {
     (factor > SCALED).then(|| Remark { file: file.to_owned(), lines: None, text, serious: true })
 }
 
-/// Checks sampling rate and steps of the clock.
+/// Checks the sampling rate, and that the log has no gaps.
 fn clock(remarks: &mut Remarks<'_>) {
     let (log, median) = (remarks.log, median_gap(remarks.log));
     let gap = |i: &usize| log.samples[i + 1].time_s - log.samples[*i].time_s;
@@ -132,7 +134,7 @@ fn clock(remarks: &mut Remarks<'_>) {
     }
 }
 
-/// Checks the first position and tilt against the task, whether there are targets, and whether the pose stands still.
+/// Checks the first position and tilt against the task, and that there are targets and the pose follows them.
 fn pose(remarks: &mut Remarks<'_>, run: &Run, task: &Task) {
     let (log, first) = (remarks.log, remarks.log.samples[0]);
     let start = Vector3::from(task.strategy.start) + Vector3::y() * run.offset;
@@ -190,7 +192,7 @@ fn standstill(samples: &[LogSample]) -> Option<[usize; 2]> {
     None
 }
 
-/// Returns the first and last index of the first touch, and its mean force without the bias.
+/// Returns the first and last index of the first touch, and its mean force less the bias, N.
 fn touch_force(log: &Log) -> Option<([usize; 2], Vector3<f64>)> {
     let from = any_touch(log)?;
     let to = after(log, from, TOUCH_S[1]);
@@ -199,8 +201,8 @@ fn touch_force(log: &Log) -> Option<([usize; 2], Vector3<f64>)> {
     (force.norm() > LEAST_N).then_some(([from, to], force))
 }
 
-/// Returns a remark if in most logs the force at the touch is larger along x, or along y, than along z. In a few logs
-/// it may be, since an edge also pushes sideways.
+/// Returns a remark if in most logs the largest component of the force at the touch is along x, or along y, instead of
+/// z. In a few logs it may be, since an edge also pushes sideways.
 fn rotated_frame(file: &str, runs: &[Run]) -> Option<Remark> {
     let forces = runs.iter().filter_map(|run| Some(touch_force(&run.log)?.1.abs()));
     let largest: Vec<usize> = forces.map(|force| force.imax()).collect();
@@ -215,7 +217,7 @@ fn rotated_frame(file: &str, runs: &[Run]) -> Option<Remark> {
     most.then(|| Remark { file: file.to_owned(), lines: None, text, serious: true })
 }
 
-/// Checks the touch; returns its index if the direction of its force is right.
+/// Checks the first touch; returns its index unless its force mainly points down, which means a wrong sign.
 fn contact(remarks: &mut Remarks<'_>) -> Option<usize> {
     let log = remarks.log;
     let Some(([from, to], force)) = touch_force(log) else {
@@ -236,7 +238,7 @@ fn contact(remarks: &mut Remarks<'_>) -> Option<usize> {
     None
 }
 
-/// Checks bias and drift in the air, and saturation.
+/// Checks the force for bias and drift in the air, and for saturation.
 fn sensor(remarks: &mut Remarks<'_>, touched: Option<usize>) {
     let log = remarks.log;
     let quiet = air(log, touched);
@@ -286,7 +288,7 @@ fn slope(samples: &[LogSample]) -> (Vector3<f64>, Vector3<f64>) {
     (sum / spread, noise / spread.sqrt())
 }
 
-/// Checks that the log has the phases of its outcome.
+/// Checks that an inserted plug reached its depth, and that the log ends before the tool is withdrawn.
 fn phases(remarks: &mut Remarks<'_>, run: &Run, task: &Task, touched: usize) {
     let log = remarks.log;
     let depth =
@@ -311,7 +313,6 @@ fn phases(remarks: &mut Remarks<'_>, run: &Run, task: &Task, touched: usize) {
     }
 }
 
-/// Formats a vector.
 fn formatted(vector: Vector3<f64>, decimals: usize) -> String {
     let numbers: Vec<String> = vector.iter().map(|v| format!("{:.decimals$}", v + 0.0)).collect();
     numbers.join(", ")

@@ -7,7 +7,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 
 /// Time between two points, s: 500 Hz.
 pub const STEP_S: f64 = 2e-3;
-/// Sudden reduction of the target's speed, as a share of its maximum, that counts as a stop.
+/// Reduction of the target's speed from one point to the next, as a fraction of its maximum, that counts as a stop.
 const STOPPED: f64 = 0.25;
 
 /// Curves of one attempt, SI units, task frame.
@@ -17,9 +17,9 @@ pub struct Curves {
     pub tcp: Vec<Vector3<f64>>,
     /// Commanded position of the TCP, if it was recorded.
     pub target: Option<Vec<Vector3<f64>>>,
-    /// Force on the tool, without the bias in the air.
+    /// Force on the tool, less its bias: the mean force in the air.
     pub force: Vec<Vector3<f64>>,
-    /// Tilt of the TCP at the first point.
+    /// Tilt of the TCP at the first point, rad.
     pub tilt: f64,
 }
 
@@ -48,7 +48,8 @@ impl Curves {
         }
     }
 
-    /// Returns the curves of samples `STEP_S` apart, as measured by a sensor that carries a tool of this mass, kg.
+    /// Returns the curves of simulated samples `STEP_S` apart. The force is that which a sensor above a tool of this
+    /// mass, kg, would measure: less mass times acceleration.
     pub fn of_samples(samples: &[Sample], tool_mass: f64) -> Self {
         let vectors = |of: fn(&Sample) -> [f64; 3], unit: f64| {
             samples.iter().map(|sample| Vector3::from(of(sample)) * unit).collect::<Vec<_>>()
@@ -73,7 +74,7 @@ impl Curves {
         Trajectory::new(commanded.iter().enumerate().map(place))
     }
 
-    /// Returns the curves along the axes of the tilted tool, which are those of the springs of a soft flange.
+    /// Returns the curves in the axes of the tilted tool, which are the principal axes of a compliant flange.
     pub fn in_tool(&self) -> Self {
         let turn = UnitQuaternion::from_scaled_axis(-self.tilt * Vector3::x());
         let turned = |all: &Vec<Vector3<f64>>| all.iter().map(|one| turn * one).collect();

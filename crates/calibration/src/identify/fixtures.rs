@@ -9,8 +9,8 @@ use nalgebra::Vector3;
 use rand::RngExt;
 
 /// Returns a log at 500 Hz of a descent at 20 mm/s onto a face at 45 mm and 0.4 mm into it, a slide of 5 mm and a
-/// descent of
-/// 13 mm; stiffness 50 N/mm, friction 0.2, standard deviation of the noise and drift in N. The touch is at 0.3 s.
+/// descent of 13 mm; stiffness 50 N/mm, coefficient of friction 0.2. `noise` is the standard deviation of the noise,
+/// `drift` the total drift, both N. The touch is at 0.3 s.
 pub fn synthetic(noise: f64, drift: f64) -> Log {
     let mut random = stream(1, 0, "log");
     let mut normal = || -> f64 { random.sample(StandardNormal) };

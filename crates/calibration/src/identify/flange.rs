@@ -4,10 +4,10 @@ use super::formulas::Flange;
 use input::units::N_PER_MM;
 use insertion::robot::{Drive, Robot, Servo};
 
-/// Relative standard deviation of the axes of a flange from the proportions of the robot file.
+/// Prior relative standard deviation of the stiffness of an axis, about that of the robot file times a common factor.
 const AXIS_SD: f64 = 0.2;
-/// Servo for a robot file without one, if all axes are identified; masses and rotations are those of
-/// `robots/servo.toml`.
+/// Servo for a robot file without one, if all axes are identified; masses, damping and rotational stiffness are those
+/// of `robots/servo.toml`.
 const SOFT: Servo = Servo {
     stiffness: [10.0 * N_PER_MM; 3],
     rotational_stiffness: [400.0; 3],
@@ -16,9 +16,9 @@ const SOFT: Servo = Servo {
     damping_ratio: 1.0,
 };
 
-/// Returns the robot with the identified stiffness, and the smallest relative standard deviation of an axis. The
-/// stiffness of each axis is that of the robot file times a factor; uncertain factors are shrunk towards the common
-/// factor, which also applies to the rotations.
+/// Returns the robot with the identified stiffness, and the smallest relative standard deviation of an axis; the robot
+/// as it is if too few axes are identified. The stiffness of each axis is that of the robot file times a factor;
+/// uncertain factors are shrunk towards the common factor, which also applies to the rotations.
 pub fn identified_robot(own: &Robot, flange: &[Option<Flange>; 3]) -> (Robot, Option<f64>) {
     let identified = flange.iter().flatten().count();
     let base = match own.drive {

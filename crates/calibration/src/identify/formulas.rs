@@ -9,13 +9,13 @@ use std::ops::Range;
 
 /// Number of points on either side over which curves are averaged before differentiation: 10 ms.
 const REACH: usize = 5;
-/// Largest delay of the force, points: 30 ms.
+/// Largest delay of the force behind the pose, points: 30 ms.
 const DELAYS: usize = 15;
 /// Smallest relative standard deviation of a stiffness: a robot is not an ideal spring.
 const FLOOR: f64 = 0.04;
 
-/// One axis of a compliant flange: F = -k e - c e' + m a, with the lag e of the TCP behind its target and the mass m
-/// without that carried by the sensor.
+/// One axis of a compliant flange: F = -k e - c e' + m a, with the force F on the tool, the lag e of the TCP behind its
+/// target, the acceleration a of the TCP, and the moving mass m without the tool below the sensor.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Flange {
     /// k, N/m.
@@ -26,12 +26,13 @@ pub struct Flange {
     pub mass: f64,
     /// Best-fitting delay of the force behind the pose, s.
     pub delay_s: f64,
-    /// Explained share of the variance of the force, 0 to 1.
+    /// Explained fraction of the variance of the force, 0 to 1.
     pub explained: f64,
 }
 
-/// Fits the flange along an axis of the tool, 0 x to 2 z, by least squares over attempts, with its jackknife error.
-/// `None` without targets, or if no force moves the robot.
+/// Fits the flange along an axis of the tool (0 for x to 2 for z) to all attempts by least squares; the standard
+/// deviation is that of the jackknife over attempts. `None` without targets, for a single attempt, or if the stiffness
+/// is not significant.
 pub fn flange(all: &[Curves], axis: usize) -> Option<Flange> {
     let all: Vec<Curves> = all.iter().map(Curves::in_tool).collect();
     let fits = (0..=DELAYS).filter_map(|delay| {
@@ -58,8 +59,8 @@ pub fn flange(all: &[Curves], axis: usize) -> Option<Flange> {
     })
 }
 
-/// Returns the share of the variance of the force that springs of the robot explain, summed over the axes of the
-/// tool; an axis along which the robot gives way against the force counts below 0.
+/// Returns the fraction of the variance of the force that a compliant flange explains, summed over the axes of the
+/// tool; negative for an axis with negative stiffness, along which the robot deflects against the force.
 pub(super) fn explained(all: &[Curves]) -> f64 {
     let all: Vec<Curves> = all.iter().map(Curves::in_tool).collect();
     let along = |axis: usize| {
@@ -78,14 +79,19 @@ fn detrended(column: DVector<f64>) -> DVector<f64> {
     column.add_scalar(-mean) - times * slope
 }
 
-/// Sums of products over one attempt, with bias and drift removed.
+/// Normal equations of the flange along one axis for one attempt, with bias and drift removed.
 struct Sums {
+    /// Products of the columns: lag, its rate, acceleration.
     products: DMatrix<f64>,
+    /// Products of the columns with the force.
     with_force: DVector<f64>,
+    /// Sum of squares of the force.
     force: f64,
 }
 
+/// Solution of the normal equations.
 struct Fit {
+    /// Stiffness, damping and mass.
     terms: [f64; 3],
     explained: f64,
 }
@@ -132,7 +138,7 @@ fn solve<'a>(sums: impl Iterator<Item = &'a Sums>) -> Option<Fit> {
     Some(Fit { terms: [0, 1, 2].map(|i| terms[i] / scale[i]), explained })
 }
 
-/// Returns the preload, m: distance from the TCP at the touch to the target after it.
+/// Returns the preload, m: the height of the TCP when the target stopped above the target at rest afterwards.
 pub fn preload(all: &[Curves]) -> Option<Estimate> {
     let of = |one: &Curves| {
         let (stopped, target) = (one.stopped()?, one.target.as_ref()?);
@@ -143,7 +149,7 @@ pub fn preload(all: &[Curves]) -> Option<Estimate> {
     estimate(&all.iter().filter_map(of).collect::<Vec<_>>())
 }
 
-/// Returns the mean, and its standard deviation from the scatter.
+/// Returns the mean with its standard error.
 fn estimate(values: &[f64]) -> Option<Estimate> {
     let moments = Moments::of(values);
     let Moments { count, mean, .. } = moments;
@@ -168,25 +174,24 @@ pub struct Slide {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Friction {
     pub slides: Vec<Slide>,
-    /// Coefficient; `None` if the part turned in all slides of a direction.
+    /// Coefficient; `None` if the part slid in one direction only, or turned in all slides of a direction.
     pub coefficient: Option<Estimate>,
 }
 
 /// Height above the face above which the part is in the air, m.
 const LIFTED: f64 = 1e-3;
-/// Share of the largest speed along y above which the part slides.
+/// Fraction of the largest speed along y above which the part slides.
 const MOVING: f64 = 0.4;
 /// Shortest slide, s.
 const SLIDE_S: f64 = 0.3;
 /// Normal force below which there is no contact, N.
 const CONTACT_N: f64 = 1.5;
-/// Relative increase over the last part of a slide above which a ratio has not settled.
+/// Relative increase of the force ratio over the second half of a slide above which it has not settled.
 const RISING: f64 = 0.12;
 /// Smallest relative standard deviation of a coefficient: contacts deviate from Coulomb's law.
 const FRICTION_FLOOR: f64 = 0.04;
 
-/// Returns the friction from a probe along y; the drift of the sensor is removed by the force in the air before and
-/// after it.
+/// Returns the friction from a probe along y; bias and drift of the force are estimated in the air before and after.
 pub fn friction(probe: &Curves) -> Option<Friction> {
     let moved = probe.target.as_ref().unwrap_or(&probe.tcp);
     let speed: Vec<f64> = rates(&smoothed(moved, REACH)).iter().map(|rate| rate.y).collect();
@@ -204,7 +209,7 @@ pub fn friction(probe: &Curves) -> Option<Friction> {
         let settled = slides.iter().filter(|slide| !slide.rising);
         estimate(&settled.map(|slide| libm::atan(slide.ratio)).collect::<Vec<_>>())
     };
-    // The angle of a face that is not level is added in one direction and subtracted in the other.
+    // The slope of the face adds to the friction angle in one direction and subtracts from it in the other.
     let both = angle(&forth).zip(angle(&back));
     let coefficient = both.map(|(a, b)| {
         let mean = libm::tan(0.5 * (a.mean + b.mean));
@@ -238,6 +243,7 @@ fn undrifted(probe: &Curves, sliding: impl Fn(usize) -> bool) -> Option<Vec<Vect
     Some(force.into_iter().enumerate().map(less).collect())
 }
 
+/// Returns the slide over a range of points, along +y for a positive `sign`.
 fn slide(force: &[Vector3<f64>], sign: f64, range: Range<usize>) -> Slide {
     let ratio = |from: f64, to: f64| {
         let place = |share: f64| range.start + (share * range.len() as f64) as usize;

@@ -11,7 +11,7 @@ use std::f64::consts::{PI, TAU};
 const GRAVITY: f64 = 9.80665;
 /// Distance from the base, mm, below which the unit is taken to be metres.
 const NEAREST_MM: f64 = 10.0;
-/// Largest rotation of the TCP from upright about y and z for which the tilt is defined, rad.
+/// Largest rotation of the TCP out of its upright orientation about y and z, rad; the model only has a tilt about x.
 const ASKEW: f64 = 0.5;
 
 #[derive(Deserialize)]
@@ -28,14 +28,14 @@ struct Raw {
     gravity_compensated: Option<bool>,
 }
 
-/// Frame of the task in the base of the robot, and the tool below the force sensor.
+/// Frame of the task in the base of the robot, whose z axis is vertical, and convention of the recorded force.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Frame {
     /// Pose of the task's frame in the base, m.
     base: Isometry3<f64>,
     /// Orientation of the upright TCP in the task's frame.
     upright: UnitQuaternion<f64>,
-    /// 1 if the recorded force acts on the tool, -1 if it is exerted by the tool.
+    /// 1 if the recorded force is that on the tool, -1 if it is the reaction, exerted by the tool.
     sign: f64,
     /// Mass below the force sensor, kg.
     pub tool_mass: f64,
@@ -77,7 +77,7 @@ impl Frame {
                            everything below the sensor";
             return check.fail("tool_mass_kg", problem);
         }
-        // Accepted, since robots state it beside the mass; the conversion does not depend on it.
+        // Robots state the centre of mass beside the mass, so it is accepted; forces do not depend on it.
         check.each("tool_centre_mm", raw.tool_centre_mm, Check::distance)?;
         Ok(Frame {
             base: Isometry3::from_parts(Translation3::from(origin * MM), rotation),
@@ -91,7 +91,7 @@ impl Frame {
     /// Converts a pose in the base (m; axis-angle, rad) to the task's frame.
     ///
     /// # Errors
-    /// If the TCP is rotated from upright by more than a tilt about x.
+    /// If the TCP is rotated out of its upright orientation about y or z, or by more than 90 degrees about x.
     pub(super) fn pose(&self, place: Vector3<f64>, turn: Vector3<f64>) -> Result<Tcp, String> {
         let position = self.base.inverse_transform_point(&place.into()).coords;
         let rotation = UnitQuaternion::from_scaled_axis(turn);

@@ -1,4 +1,4 @@
-//! The log of one attempt: commanded and measured TCP, and the force on the tool.
+//! Log of one attempt or probe: commanded and measured TCP, and the force on the tool.
 
 use input::units::{DEG, MM};
 use input::{InputError, Place};
@@ -10,12 +10,12 @@ use std::fmt::Write as _;
 
 /// Smallest number of samples: 0.1 s at 500 Hz.
 pub const FEWEST: usize = 50;
-/// Largest number of samples: half an hour at 500 Hz, 0.1 GB.
+/// Largest number of samples: 0.1 GB in memory.
 pub const MOST: usize = 1_000_000;
-/// Longest duration of a log, s: logs are interpolated at regular times, however far apart their samples are.
+/// Longest duration of a log, s. It bounds the number of points after interpolation at regular times.
 pub const LONGEST_S: f64 = 600.0;
 
-/// Header of [`Log::csv`] without targets: time, TCP and force on the tool, in the task's frame.
+/// Required columns: time, TCP and force on the tool, in the task's frame.
 pub const COLUMNS: [&str; 8] = ["t_s", "x_mm", "y_mm", "z_mm", "tilt_deg", "fx_n", "fy_n", "fz_n"];
 /// Columns of the commanded TCP; a log has all of them or none.
 pub const TARGETS: [&str; 3] = ["target_x_mm", "target_y_mm", "target_z_mm"];
@@ -44,16 +44,15 @@ pub struct Log {
     pub samples: Vec<LogSample>,
 }
 
-/// Log with its row of the table of runs.
+/// Log with its line of the table of runs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Run {
-    /// Recorded log.
     pub log: Log,
-    /// Infill of the finger, and other design variables of the table.
+    /// Infill of the finger, and other design parameters of the table.
     pub design: Design,
     /// Shift of the start along y, m; 0 for a probe that has none.
     pub offset: f64,
-    /// Outcome on the robot; `None` for a probe: slow motions on a flat face of the socket.
+    /// Outcome on the robot; `None` for a probe: the part is slid back and forth on a flat face to measure friction.
     pub outcome: Option<Outcome>,
     /// Line in the table of runs.
     pub line: usize,
@@ -63,7 +62,7 @@ impl Log {
     /// Checks the samples of a log; `file` is named in errors.
     ///
     /// # Errors
-    /// If there are too few or too many, a number is not finite, or time does not increase.
+    /// If there are too few or too many, a number is not finite, time does not increase, or the log is too long.
     pub fn new(file: &str, samples: Vec<LogSample>) -> Result<Self, InputError> {
         let whole = |problem: String| Err(Place::file(file).fault(problem));
         if !(FEWEST..=MOST).contains(&samples.len()) {

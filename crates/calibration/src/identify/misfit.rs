@@ -8,29 +8,30 @@ use serde::Serialize;
 /// Names of the components of the force.
 const FORCES: [&str; 3] = ["fx", "fy", "fz"];
 
-/// Root mean square of the residuals (measured minus simulated) of all attempts, in standard deviations.
+/// Misfit of a phase and component of the force: root mean square of the residuals (measured minus simulated) of all
+/// attempts, in standard deviations of the data, which include model error.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Misfit {
     /// Phase of the attempt: search or push.
     pub phase: &'static str,
     /// Component of the force.
     pub axis: &'static str,
-    /// Misfit with the numbers of the files.
+    /// Misfit with the values of the input files.
     pub before: f64,
-    /// Misfit with the identified numbers.
+    /// Misfit with the identified values.
     pub after: f64,
 }
 
-/// Ratio of the misfit of the held-out attempt to that of the fitted attempts above which there is a warning.
+/// Ratio of the misfit of the held-out attempt to that of the fitted attempts above which the fit is doubtful.
 pub const WARNING: f64 = 1.5;
 
-/// Misfit of the held-out attempt and of the fitted attempts, with the identified numbers: root mean squares over all
-/// components of the force, in standard deviations.
+/// Misfit of the held-out attempt and of the fitted attempts with the identified values: root mean squares over the
+/// phases and the components of the force, in standard deviations of the data.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Validation {
     /// File of the attempt's log.
     pub log: String,
-    /// Shift of the attempt's start, mm.
+    /// Shift of the attempt's start along y, mm.
     pub offset_mm: f64,
     /// Outcome on the robot.
     pub outcome: &'static str,

@@ -1,5 +1,5 @@
-//! Detection of a compliant socket or grip, which the model does not have: under the push the TCP sinks more per
-//! newton than in the simulation, where only the fingers are compliant.
+//! Detection of a compliant socket mount or grip. The model has neither: during the push the measured TCP descends more
+//! per newton than the simulated one, below which only the fingers are compliant.
 
 use super::check::Remark;
 use super::curves::Curves;
@@ -7,16 +7,17 @@ use super::question::Compared;
 use ask_tell::statistics::median;
 use input::units::N_PER_MM;
 
-/// Shares of the largest force between which the compliance is fitted: the seated plug is pressed.
+/// Fractions of the peak force between which the compliance is fitted, where the seated plug is only pressed.
 const FORCE_SHARES: [f64; 2] = [0.4, 0.9];
-/// Smallest peak force, N, and smallest number of points of a fit.
+/// Smallest peak force, N, and smallest number of intervals between points, for a fit.
 const PRESSED: (f64, usize) = (20.0, 4);
-/// Smallest additional compliance for a remark, m/N (125 N/mm): more than an uncertain modulus of the fingers explains.
+/// Smallest additional compliance for a remark, m/N (125 N/mm): more than uncertain stiffness of the fingers explains.
 const LEAST_COMPLIANCE: f64 = 8e-6;
 /// Smallest number of attempts for a remark.
 const LEAST_ATTEMPTS: usize = 3;
 
-/// Returns a remark if socket or grip are compliant, by the median over the attempts; `file` is the table of the runs.
+/// Returns a remark if the median of the additional compliance over the attempts is too large; `file` is the table of
+/// the runs.
 pub fn remark(file: &str, compared: &[Compared]) -> Option<Remark> {
     let more = |one: &Compared| {
         let [measured, simulated] =
@@ -37,7 +38,8 @@ fn compliant(file: &str, compliances: &[f64]) -> Option<Remark> {
     (compliances.len() >= LEAST_ATTEMPTS && more > LEAST_COMPLIANCE).then_some(remark)
 }
 
-/// Returns the compliance under the push, the distance by which the TCP sinks per newton as the force rises, m/N.
+/// Returns the compliance, m/N: the descent of the TCP per newton while the force rises in the push, which begins at
+/// index `push`; `None` if the force is too small or rises too fast for a fit.
 fn compliance(curves: &Curves, push: usize) -> Option<f64> {
     let pushed = curves.force.get(push..)?;
     let most = (0..pushed.len()).max_by(|&a, &b| pushed[a].z.total_cmp(&pushed[b].z))?;
@@ -65,7 +67,7 @@ mod tests {
     use super::*;
     use nalgebra::Vector3;
 
-    /// Returns curves of a push at 1 N per point against a spring of this compliance, m/N, held at 60 N.
+    /// Returns curves of a push whose force rises by 1 N per point to 60 N, against a spring of a compliance, m/N.
     fn pressed(per_newton: f64) -> Curves {
         let force = |i: i32| f64::from((i - 20).clamp(0, 60));
         let at = |i: i32| Vector3::new(0.0, 0.0, 0.05 - per_newton * force(i));

@@ -1,4 +1,4 @@
-//! Identification of the numbers of a cell from logs of attempts.
+//! Identification of the parameters of a cell from logs of attempts: closed-form estimates, then a fit of the others.
 
 use super::axes::{slides, springs};
 use super::check::{self, Remark};
@@ -24,15 +24,17 @@ use parameters::numbers::{FLANGE, FRICTION, Kind};
 use parameters::{Parameter, Scale, Transform};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Settings of the ensemble smoother: ten members per unknown, four iterations; errors are correlated over 0.1 s.
+/// Settings of the ensemble smoother: ten members per unknown, four iterations; errors are correlated over ten bins,
+/// 0.1 s.
 pub const SETTINGS: Settings = Settings { members: 10, rounds: 4, correlated: 10.0, seed: 0 };
-/// Largest number of replayed attempts of a finger; more add little information.
+/// Largest number of fitted attempts of a finger; more add little information.
 const MAX_ATTEMPTS: usize = 5;
-/// Factor on the time step in the fit: it changes identified values by less than half their standard deviation.
+/// Factor on the time step of the simulations of the fit; the coarser step changes identified values by less than half
+/// their standard deviation.
 const COARSE: f64 = 4.0;
-/// Smallest standard deviation of a preload, mm: a touch is detected a few ms late.
+/// Smallest standard deviation of a preload, mm, since a touch is detected a few ms late.
 const PRELOAD_MM: f64 = 0.02;
-/// Prefix of the paths of the strategy.
+/// Prefix of the paths of the strategy's parameters.
 const STRATEGY: &str = "task.strategy.";
 
 /// Inputs of an identification: logs, priors and settings.
@@ -48,12 +50,12 @@ pub struct Identification<'a> {
     pub stop: &'a AtomicBool,
 }
 
-/// Attempt, measured and simulated.
+/// Measured attempt with its simulations: curves and outcome of each.
 pub struct Compared {
     pub logged: Logged,
-    /// Simulation with the numbers of the files.
+    /// Simulation with the values of the input files.
     pub before: (Curves, Outcome),
-    /// Simulation with the identified numbers.
+    /// Simulation with the identified values.
     pub after: (Curves, Outcome),
 }
 
@@ -62,18 +64,19 @@ pub struct Identified {
     pub robot: Robot,
     /// Flange along x, y and z; `None` for an axis that is not identified.
     pub flange: [Option<Flange>; 3],
+    /// Preload, m: travel of the commanded position beyond the touch.
     pub preload: Option<Estimate>,
-    /// Friction of each probe, by its file.
+    /// Friction from each probe, with the file of its log.
     pub probes: Vec<(String, Friction)>,
     pub unknowns: Vec<Unknown>,
     pub smoothed: Smoothed,
     pub compared: Vec<Compared>,
-    /// Attempt held out of the fit for validation, if there is one.
+    /// Attempt held out for validation, if some were not fitted.
     pub held_out: Option<Compared>,
 }
 
 impl Identified {
-    /// Returns whether any number of the cell was identified.
+    /// Returns whether any parameter of the cell was identified.
     pub fn is_informative(&self) -> bool {
         let identified =
             |one: &Unknown| matches!(one.from, ValueOrigin::Formula | ValueOrigin::Fit);
@@ -87,9 +90,9 @@ pub struct IdentificationResult {
     pub task: String,
     /// File with the table of the logs, to which the remarks on all logs refer.
     pub runs: String,
-    /// Remarks on the logs, each a sentence.
+    /// Remarks on the logs.
     pub remarks: Vec<Remark>,
-    /// Identified numbers of the cell, and the curves from which they are identified.
+    /// Identified parameters of the cell, and the curves from which they are identified.
     pub found: Identified,
     /// The cell, for `--cell`, `--priors` and `--uncertainty`.
     pub cell: Priors,
@@ -122,8 +125,8 @@ impl Identification<'_> {
         chosen(self.runs.iter().filter_map(Logged::new).collect())
     }
 
-    /// Returns the attempt to hold out for validation: among those not fitted, the one farthest from any fitted
-    /// attempt.
+    /// Returns the attempt to hold out for validation: of those not fitted, the one whose start is farthest from the
+    /// nearest fitted start of the same finger.
     fn held_out(&self, fitted: &[Logged]) -> Option<Logged> {
         let apart = |one: &Logged| {
             let alike = fitted.iter().filter(|other| other.design == one.design);
@@ -134,9 +137,8 @@ impl Identification<'_> {
         rest.max_by(|a, b| apart(a).total_cmp(&apart(b)))
     }
 
-    /// Returns the median over the attempts of the ratio of the measured forces to the simulated forces of the fingers
-    /// along the measured path. It does not depend on the stiffness of the robot, which could compensate for a wrong
-    /// unit.
+    /// Returns the ratio of measured to simulated forces, root mean squares from the touch on, as the median over the
+    /// attempts. An ideal robot follows the measured path, so that its stiffness cannot compensate for a wrong unit.
     fn force_scale(&self, attempts: &[Logged]) -> Result<Option<f64>, DesignError> {
         let own = &self.evaluator.robot;
         let rigid = Robot { drive: Drive::Ideal, stop_force: f64::MAX, ..own.clone() };
@@ -153,7 +155,7 @@ impl Identification<'_> {
         Ok(median(along.iter().zip(&replayed).map(ratio).filter(|ratio| ratio.is_normal())))
     }
 
-    /// Identifies numbers by formulas and fits the others.
+    /// Estimates parameters in closed form where possible, and fits the others.
     ///
     /// # Errors
     /// If a value of a prior is invalid.
@@ -187,7 +189,7 @@ impl Identification<'_> {
         Ok(Identified { robot, flange, preload, probes, unknowns, smoothed, compared, held_out })
     }
 
-    /// Returns an unknown that is not fitted: the number of the files with the standard deviation of its prior.
+    /// Creates an unknown that is not fitted: the value of the input files with the standard deviation of its prior.
     fn assumed(&self, prior: Parameter) -> Unknown {
         let own = match prior.path.kind() {
             Kind::File => self.evaluator.number(self.template, &prior.path),
@@ -206,7 +208,7 @@ impl Identification<'_> {
         Unknown { prior, posterior, remaining_sd: None, from: ValueOrigin::Files, advice }
     }
 
-    /// Returns the friction of each probe, by its file.
+    /// Returns the friction from each probe, with the file of its log.
     fn probes(&self) -> Vec<(String, Friction)> {
         let probes = self.runs.iter().filter(|run| run.outcome.is_none());
         let friction = |run: &Run| {
@@ -231,9 +233,9 @@ impl Identification<'_> {
             let value = row.value.map(|value| row.applied(own, value));
             let factor = if row.transform == Transform::Factor { own.abs() } else { 1.0 };
             Parameter {
-                // The width of the opening is not a number of the task file.
+                // A change of a shape has no value of its own in the task file.
                 transform: if added { Transform::Shift } else { Transform::Value },
-                // A stroke towards -y is a factor on a negative number.
+                // A factor on a negative value, as of a stroke towards -y, swaps the bounds.
                 low: low.min(high),
                 high: low.max(high),
                 scale: if low < 0.0 { Scale::Linear } else { row.scale },
@@ -246,7 +248,8 @@ impl Identification<'_> {
         self.priors.of(&template.task.name).filter(has).map(as_value).collect()
     }
 
-    /// Returns the parameter as identified by a formula; `None` if no formula applies.
+    /// Returns the parameter as estimated in closed form; `None` if no formula applies. `flange` is the relative
+    /// standard deviation of its stiffness.
     fn by_formula(
         &self,
         prior: &Parameter,
@@ -309,7 +312,7 @@ impl Identification<'_> {
         smooth(rows.len(), &data, Settings { seed: self.seed, ..SETTINGS }, predict)
     }
 
-    /// Simulates attempts with the numbers of the files and with the identified ones.
+    /// Simulates attempts with the values of the input files and with the identified ones.
     fn compared(
         &self,
         robot: &Robot,

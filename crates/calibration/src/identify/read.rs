@@ -1,4 +1,5 @@
-//! Parsing of logs: `t_s,x_mm,..` in the task's frame, or the columns of an RTDE recorder in the base's.
+//! Parsing of logs: columns `t_s,x_mm,..` in the task's frame, or those of Universal Robots' real-time interface (RTDE)
+//! in the frame of the robot's base.
 
 use super::frame::Frame;
 use super::log::{COLUMNS, Log, LogSample, MOST, TARGETS};
@@ -14,9 +15,9 @@ use std::path::Path;
 
 /// Largest size of a log, bytes: ten minutes at 500 Hz.
 pub const LARGEST_LOG: u64 = 64 << 20;
-/// Largest plausible coordinate, m.
+/// Largest plausible coordinate of a position, m.
 const FARTHEST: f64 = 10.0;
-/// Smallest plausible maximum of the coordinates, mm.
+/// Largest coordinate of a log, mm, below which its unit is taken to be metres.
 const NEAREST_MM: f64 = 1.0;
 /// Largest plausible median time between samples, s.
 const SLOWEST_S: f64 = 0.5;
@@ -31,8 +32,8 @@ pub fn text(path: &Path) -> Result<String, InputError> {
     files::read_text(path, LARGEST_LOG).map_err(cannot)
 }
 
-/// Parses and checks the text of a log; a log in the base's frame needs `frame`, and `file` is named in errors. Lines
-/// that begin with `#` are comments.
+/// Parses and checks the text of a log; `file` is named in errors. A log in the base's frame needs `frame`; in the
+/// task's frame, its force convention applies if it is given. Lines that begin with `#` are comments.
 ///
 /// # Errors
 /// If the header is unknown, a cell is invalid or looks like a value in another unit, or [`Log::new`] rejects the
@@ -87,11 +88,13 @@ pub(super) fn median_gap(log: &Log) -> f64 {
 
 /// Columns of a log: time, TCP, force, and the commanded TCP if it was recorded.
 struct Table<'a> {
-    /// Frame, if the log is in the robot's base, as RTDE recorders write it.
+    /// Frame for the conversion of poses and force, if the log has RTDE columns.
     rtde: Option<&'a Frame>,
+    /// Frame for the convention of the force, if it is given.
     frame: Option<&'a Frame>,
     /// Whether commas separate the cells; otherwise white space does.
     commas: bool,
+    /// Names of all columns of the file.
     names: Vec<&'a str>,
     /// Indices of the columns of time, TCP and force.
     places: Vec<usize>,
@@ -153,7 +156,7 @@ impl<'a> Table<'a> {
         Ok(Table { rtde: frame.filter(|_| is_rtde), frame, commas, names, places, targets })
     }
 
-    /// Returns the sample of a line; in the task's frame its commanded tilt is 0.
+    /// Returns the sample of a line. The commanded tilt, which a log in the task's frame lacks, is 0; `parse` sets it.
     fn sample(&self, line: usize, text: &str) -> Result<LogSample, String> {
         let found: Vec<&str> = cells(text, self.commas).collect();
         if found.len() != self.names.len() {
@@ -208,7 +211,7 @@ impl<'a> Table<'a> {
     }
 }
 
-/// Converts a pose of six numbers, m and rad, from the base to the task's frame.
+/// Converts a pose, position (m) and axis-angle (rad), from the base's to the task's frame.
 fn of_base(frame: &Frame, pose: &[f64]) -> Result<Tcp, String> {
     let (place, turn) = pose.split_at(3);
     if let Some(far) = place.iter().find(|m| m.abs() > FARTHEST) {

@@ -1,4 +1,5 @@
-//! Simulation of logged attempts along their commanded trajectories, and the data that are compared.
+//! Simulation of logged attempts along their commanded trajectories, and the data in which both are compared: means of
+//! force and pose over bins of the curves.
 
 use super::curves::{Curves, STEP_S, mean};
 use super::log::{Log, LogSample, Run};
@@ -16,20 +17,23 @@ use nalgebra::Vector3;
 use parameters::Parameter;
 use std::ops::Range;
 
-/// Replayed time before the touch, s.
+/// Simulated time before the touch, s.
 const AIR_S: f64 = 0.5;
 /// Points of the curves per bin: 10 ms.
 const BIN: usize = 5;
-/// Model error of a force: drift of the sensor, N, and share of the force.
+/// Constant part of the standard deviation of a force, N: drift of the sensor.
 const FORCE_N: f64 = 0.5;
+/// Proportional part of it, as a fraction of the force: model error.
 const FORCE_SHARE: f64 = 0.1;
-/// Model error of a pose: repeatability of a small arm, m, and share of the distance from its target.
+/// Constant part of the standard deviation of a pose, m: repeatability of a small arm.
 const POSE: f64 = 0.03 * MM;
+/// Proportional part of it, as a fraction of the distance from the target: model error.
 const POSE_SHARE: f64 = 0.1;
-/// Force below which there is no contact, force above which there is contact, N, and number of successive bins in which
-/// only one of measurement and simulation has contact before the comparison ends: 30 ms.
+/// Force below which there is certainly no contact, N.
 const NO_CONTACT_N: f64 = 1.5;
+/// Force above which there is certainly contact, N.
 const CONTACT_N: f64 = 4.0;
+/// Number of successive bins with contact in only one of measurement and simulation that ends the comparison: 30 ms.
 const APART_BINS: usize = 3;
 
 /// Logged attempt, prepared for replay.
@@ -37,6 +41,7 @@ const APART_BINS: usize = 3;
 pub struct Logged {
     pub file: String,
     pub design: Design,
+    /// Shift of the start along y, m.
     pub offset: f64,
     /// Outcome on the robot.
     pub outcome: Outcome,
@@ -49,7 +54,7 @@ pub struct Logged {
 }
 
 impl Logged {
-    /// Prepares the attempt of a run; `None` if nothing is touched, or for a probe.
+    /// Prepares the attempt of a run; `None` for a probe, or if nothing is touched or the log after it is too short.
     pub fn new(run: &Run) -> Option<Self> {
         let (outcome, touched) = run.outcome.zip(touch(&run.log))?;
         let touched_s = run.log.samples[touched].time_s;
@@ -90,7 +95,7 @@ impl Logged {
         self.bins().flat_map(move |bin| std::iter::repeat_n(phase(bin), self.data_per_bin()))
     }
 
-    /// Returns the number of data per bin: three of the force, and three of the offset from a recorded target.
+    /// Returns the number of data per bin: three of the force, and three of the deviation from the target, if recorded.
     pub fn data_per_bin(&self) -> usize {
         if self.curves.target.is_some() { 6 } else { 3 }
     }
@@ -112,7 +117,8 @@ impl Logged {
         self.bins().flat_map(datum).collect()
     }
 
-    /// Returns the simulated data, up to the first contact that only one of measurement and simulation makes or loses.
+    /// Returns the simulated data; `None` from where contact differs between measurement and simulation, or where the
+    /// simulation has ended.
     pub fn predicted(&self, replayed: &Curves) -> Predicted {
         let offsets = offsets(replayed);
         let (mut apart, mut over) = (0, false);
@@ -136,15 +142,15 @@ impl Logged {
     }
 }
 
-/// Returns the offsets of the TCP from its target, if the target is recorded.
+/// Returns the deviations of the TCP from its target, m, if the target is recorded.
 fn offsets(curves: &Curves) -> Option<Vec<Vector3<f64>>> {
     let target = curves.target.as_ref()?;
     Some(curves.tcp.iter().zip(target).map(|(tcp, target)| tcp - target).collect())
 }
 
 impl Identification<'_> {
-    /// Returns curves and outcomes of attempts with these values, on a robot and with a factor on the time step of
-    /// the engine; each finger is grasped once.
+    /// Simulates attempts with these values on a robot, with a factor on the time step of the engine; each finger
+    /// grasps the plug once for all its attempts, which are grouped by finger.
     pub(super) fn replayed(
         &self,
         (robot, step_factor): (&Robot, f64),

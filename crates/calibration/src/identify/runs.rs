@@ -15,7 +15,7 @@ use std::path::Path;
 /// Columns of the table; further ones are keys of a space file.
 pub const COLUMNS: [&str; 7] =
     ["log", DENSITY_KEY, DIRECTION_KEY, "offset_mm", "outcome", "date", "note"];
-/// Largest total number of samples of all logs, 0.2 GB.
+/// Largest total number of samples of all logs: 0.2 GB in memory.
 const MAX_SAMPLES: usize = 2_000_000;
 
 /// Line of the table.
@@ -62,7 +62,7 @@ fn outcome(text: &str) -> Result<Option<Outcome>, String> {
 /// `text_of` reads the text of a log.
 ///
 /// # Errors
-/// If the table cannot be read or used, has no attempt, or a log cannot be used.
+/// If the table cannot be read, is invalid or has no attempt, or if a log cannot be read or is invalid.
 pub fn read(
     path: &Path,
     frame: Option<&Frame>,

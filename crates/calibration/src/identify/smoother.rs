@@ -1,9 +1,9 @@
 //! Ensemble smoother with multiple data assimilation, ES-MDA (Emerick and Reynolds 2013,
 //! doi:10.1016/j.cageo.2012.03.011), for few unknowns and many, partly missing, data.
 //!
-//! With ten members per unknown, the covariance of unknowns and data is that of a linear regression of the data on
-//! the unknowns; its residuals count as errors of the data, so that the spread does not collapse onto members that
-//! fit by chance.
+//! The ensemble has ten members per unknown only. Their covariance with the data is therefore that of a linear
+//! regression of the data on the unknowns; its residuals count as errors of the data, so that the spread does not
+//! collapse onto members that fit by chance.
 
 use ask_tell::normal::StandardNormal;
 use ask_tell::statistics::Moments;
@@ -15,10 +15,10 @@ use rayon::prelude::*;
 /// Coordinates of the unknowns, in which the prior is standard normal.
 pub type Coordinates = Vec<f64>;
 
-/// Predictions of the data by a member, in the order of the data; `None` for data that cannot be compared.
+/// Predictions of the data by a member, in the order of the data; `None` for data that it does not predict.
 pub type Predicted = Vec<Option<f64>>;
 
-/// Measured number with the standard deviation of its error, including that of the model.
+/// Measured value with the standard deviation of its error, including that of the model.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Datum {
     pub value: f64,
@@ -32,7 +32,7 @@ pub struct Settings {
     pub members: usize,
     /// Number of assimilations; the variances of the data are multiplied by it.
     pub rounds: usize,
-    /// Number of successive data that share an error.
+    /// Number of successive data of a kind over which errors are correlated; the variances are multiplied by it, too.
     pub correlated: f64,
     pub seed: u64,
 }
@@ -42,20 +42,20 @@ pub struct Settings {
 pub struct Smoothed {
     /// Members after the last round.
     pub members: Vec<Coordinates>,
-    /// Expected standard deviations of the posterior, from the first members.
+    /// Posterior standard deviation of each unknown as expected from a linear model of the first members, 0 to 1.
     pub expected_sd: Vec<f64>,
     /// Root mean square of (measured - predicted) / sd for the members' mean, before each round and after the last.
     pub misfit: Vec<f64>,
-    /// Share of the data that at least a quarter of the last members predict.
+    /// Fraction of the data that at least a quarter of the last members predict.
     pub compared: f64,
 }
 
 /// Largest residual, in combined standard deviations of the datum and of the members; larger ones are clipped, so that
-/// an event that a member predicts at another time does not dominate.
+/// an event, such as a contact, that a member predicts at another time does not dominate.
 const MAX_RESIDUAL: f64 = 3.0;
 /// Largest coordinate, in standard deviations of the prior.
 const MAX_COORDINATE: f64 = 3.0;
-/// Smallest share of the members that must predict a datum for it to be used.
+/// Smallest fraction of the members that must predict a datum for it to be used.
 const MIN_SHARE: f64 = 0.25;
 
 /// Draws members and assimilates the data; `predict` is called in parallel.

@@ -48,7 +48,7 @@ fn a_log_reads_back_as_it_was_written() {
 
 const FRAME: &str = "origin_mm = [400, -120, 35]\naxis_angle_rad = [0.02, -0.01, 0.7]\n";
 
-/// The log as a UR records it whose base sees the task's frame there.
+/// Returns the log as recorded by a UR robot with the task's frame of `FRAME`; `blank` separates the cells.
 fn rtde(log: &Log, blank: &str) -> String {
     let turn = UnitQuaternion::from_scaled_axis(Vector3::new(0.02, -0.01, 0.7));
     let base = Isometry3::from_parts((Vector3::new(400.0, -120.0, 35.0) * MM).into(), turn);
@@ -90,7 +90,7 @@ fn both_formats_give_the_same_log() {
     }
     let error = read::parse(&rtde(&log, " "), "a.csv", None).unwrap_err().to_string();
     assert!(error.contains("--frame frame.toml"), "{error}");
-    // A tool of 1 kg whose weight the sensor feels, in the task's frame: it is taken off.
+    // The weight of a tool of 1 kg, not compensated by the sensor, is subtracted.
     let heavy = "origin_mm = [400, 0, 0]\naxis_angle_rad = [0, 0, 1]\ntool_mass_kg = 1\ngravity_compensated = false";
     let heavy = Frame::parse(heavy, "frame.toml").unwrap();
     let found = read::parse(&log.csv(), "a.csv", Some(&heavy)).unwrap();
@@ -245,7 +245,7 @@ fn a_table_of_runs_names_logs_beside_it() {
     assert!(error.contains("longer than 67108864 bytes"), "{error}");
 }
 
-/// The path holds what the robot made of the touch, too: followed, it makes the same attempt.
+/// The commanded path contains the reaction to the touch, so that replaying it gives the same attempt.
 #[test]
 fn an_attempt_along_its_own_path_is_the_same_attempt() {
     let file = ROBOTS.iter().find(|robot| robot.name == "servo").unwrap();

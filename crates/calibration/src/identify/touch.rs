@@ -5,15 +5,15 @@ use nalgebra::Vector3;
 
 /// Shortest time in the air at the beginning of a log, s; an earlier touch is not detected.
 const FIRST_AIR_S: f64 = 0.05;
-/// Time over which forces are averaged against noise, s; at least three samples.
+/// Time over which forces are averaged to reduce noise, s; at least three samples.
 const MEAN_S: f64 = 0.01;
-/// Shortest touch, s: longer than the starts and stops of a quick move.
+/// Shortest touch, s: longer than the inertial forces at the start and stop of a fast motion.
 const LASTS_S: f64 = 0.06;
 /// Beginning and end of the interval from which noise and bias are estimated, s before the touch.
 const NEAR_AIR_S: [f64; 2] = [0.3, 0.02];
-/// Smallest force of a touch, N, and its smallest multiple of the noise of a mean.
+/// Smallest mean force of a touch, N and in standard errors; the larger of the two applies.
 const LEAST: [f64; 2] = [1.5, 5.0];
-/// Largest mean force that counts as zero without noise, N.
+/// Mean force, N, below which the tool is in the air; two standard errors if that is more.
 const LEFT_N: f64 = 0.05;
 
 /// Returns the mean force in the air before the touch, N; that of the whole log if nothing is touched.
@@ -21,7 +21,7 @@ pub fn bias(log: &Log) -> Vector3<f64> {
     AirForce::of(air(log, touch(log))).bias
 }
 
-/// Returns the samples in the air, without those next to the touch; never empty.
+/// Returns the samples in the air, without those next to the touch; the whole log if nothing is touched.
 pub(super) fn air(log: &Log, touch: Option<usize>) -> &[LogSample] {
     let end = touch.map_or(log.samples.len(), |at| before(log, at, NEAR_AIR_S[1]).max(1));
     &log.samples[..end]
@@ -38,7 +38,7 @@ pub(super) fn any_touch(log: &Log) -> Option<usize> {
     onset(log, |force| force.norm())
 }
 
-/// Mean of the force in the air and noise of a sample, N.
+/// Mean of the force in the air, N, and standard deviation of the noise of a sample, N.
 pub(super) struct AirForce {
     pub bias: Vector3<f64>,
     pub noise: Vector3<f64>,
@@ -71,7 +71,8 @@ pub(super) fn after(log: &Log, at: usize, seconds: f64) -> usize {
     at + log.samples[at..].partition_point(|sample| sample.time_s < until)
 }
 
-/// Returns the index from which the size of the force, less its bias, stays above its noise.
+/// Returns the index from which the force, less its bias, lastingly exceeds its noise; `size` is the component or norm
+/// that is compared.
 fn onset(log: &Log, size: fn(Vector3<f64>) -> f64) -> Option<usize> {
     let samples = &log.samples;
     let first = after(log, 0, FIRST_AIR_S).max(5);
@@ -88,7 +89,7 @@ fn onset(log: &Log, size: fn(Vector3<f64>) -> f64) -> Option<usize> {
     };
     let found = (0..samples.len().saturating_sub(3)).find(touches)?;
     let found = after(log, found, MEAN_S).max(found + 3) - 1;
-    // Goes back to where the force left the noise just before the touch, since the bias may have drifted until then.
+    // Goes back to where the force left the noise, with the bias just before the touch, since it may have drifted.
     let mut touch = found;
     for _ in 0..3 {
         let near = before(log, touch, NEAR_AIR_S[1]);

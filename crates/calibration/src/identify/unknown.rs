@@ -1,37 +1,36 @@
-//! Unknown numbers of the cell: prior and posterior.
+//! Unknown parameters of the cell (robot, gripper and task): prior and posterior.
 
 use super::smoother::Smoothed;
 use ask_tell::statistics::{Moments, normal_cdf};
 use parameters::numbers::{CLEARANCE, FRICTION, Kind, PAD_FRICTION, STIFFNESS};
 use parameters::{Parameter, Scale};
 
-/// Inflation factor on the posterior standard deviations of the smoother, from the coverage on synthetic cells.
+/// Factor on the posterior standard deviations of the smoother, chosen by the coverage on synthetic cells.
 const INFLATION: f64 = 1.4;
-/// Posterior standard deviation, as a share of the prior's, above which an unknown keeps its prior.
+/// Posterior standard deviation, as a fraction of the prior's, above which an unknown keeps its prior.
 const UNIDENTIFIED: f64 = 0.8;
 
 /// Source of a value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ValueOrigin {
-    /// Read from the logs by a formula.
+    /// Estimated from the logs in closed form (`formulas`).
     Formula,
     /// Fitted to the curves of the logs.
     Fit,
     /// Prior, since the logs do not identify it.
     Prior,
-    /// Value of the files, not fitted.
+    /// Value of the input files, not fitted.
     Files,
 }
 
-/// Unknown number of the cell.
+/// Unknown parameter of the cell.
 #[derive(Debug, Clone)]
 pub struct Unknown {
-    /// Prior.
     pub prior: Parameter,
-    /// Posterior.
     pub posterior: Parameter,
-    /// Expected and actual standard deviation of the posterior, as shares of the prior's.
+    /// Standard deviation of the posterior as expected before the fit, and after it, as fractions of the prior's;
+    /// `None` if the parameter was not fitted.
     pub remaining_sd: Option<[f64; 2]>,
     /// Source of the posterior.
     pub from: ValueOrigin,
@@ -39,12 +38,12 @@ pub struct Unknown {
     pub advice: Option<&'static str>,
 }
 
-/// Returns the values of parameters at these standard normal coordinates.
+/// Returns the values of parameters at standard normal coordinates `z`.
 pub(super) fn values<'a>(rows: &[&'a Parameter], z: &[f64]) -> Vec<(&'a Parameter, f64)> {
     rows.iter().zip(z).map(|(row, &z)| (*row, row.at(normal_cdf(z)))).collect()
 }
 
-/// Returns a parameter with a measured value; the bounds are widened to include the value.
+/// Returns a parameter with a measured value; its bounds are widened to three standard deviations but stay positive.
 pub(super) fn with_value(row: &Parameter, value: f64, sd: f64, source: &str) -> Parameter {
     Parameter {
         value: Some(value),
@@ -56,18 +55,19 @@ pub(super) fn with_value(row: &Parameter, value: f64, sd: f64, source: &str) -> 
     }
 }
 
-/// Returns an unknown with a posterior.
+/// Creates an unknown with a posterior of its own.
 pub(super) fn identified(prior: Parameter, posterior: Parameter, from: ValueOrigin) -> Unknown {
     Unknown { prior, posterior, remaining_sd: None, from, advice: None }
 }
 
-/// Returns an unknown that keeps its prior, with advice.
+/// Creates an unknown that keeps its prior, with advice.
 pub(super) fn unidentified(prior: Parameter, remaining_sd: Option<[f64; 2]>) -> Unknown {
     let advice = Some(advice(&prior));
     Unknown { posterior: prior.clone(), prior, remaining_sd, from: ValueOrigin::Prior, advice }
 }
 
-/// Returns an unknown with its fitted posterior; with its prior if the logs do not identify it.
+/// Creates unknown `i` of the smoother: with its closed-form estimate `known` if there is one, else with its fitted
+/// posterior, or with its prior if the logs do not identify it.
 pub(super) fn fit(
     prior: &Parameter,
     known: Option<&Parameter>,
@@ -79,7 +79,7 @@ pub(super) fn fit(
     let (mean, sd) = (own.mean, own.sample_deviation());
     let remaining_sd = Some([smoothed.expected_sd[i], INFLATION * sd]);
     if let Some(known) = known {
-        // A value measured directly is not changed to compensate for errors of the model.
+        // The fit must not change a measured value to compensate for errors of the model.
         let unknown = identified(prior.clone(), known.clone(), ValueOrigin::Formula);
         return Unknown { remaining_sd, ..unknown };
     }
@@ -101,13 +101,13 @@ pub(super) fn fit(
     Unknown { remaining_sd, ..identified(prior.clone(), posterior, ValueOrigin::Fit) }
 }
 
-/// Returns whether a number is excluded from the fit, since it would absorb the errors of other numbers;
-/// the measurements of [`advice`] determine it better.
+/// Returns whether a parameter is excluded from the fit, since it would absorb the errors of the others; the
+/// measurement of [`advice`] determines it better.
 pub(super) fn not_fitted(row: &Parameter) -> bool {
     row.path == PAD_FRICTION || row.path == STIFFNESS
 }
 
-/// Returns the measurement that would identify a number.
+/// Returns the measurement that would identify a parameter.
 pub(super) fn advice(row: &Parameter) -> &'static str {
     let path = &row.path;
     match path.kind() {

@@ -30,9 +30,9 @@ pub trait Request: Args {
 pub struct Output {
     /// The result for `--json` and Python; an error if it contains a path that is not UTF-8.
     pub value: Result<Value, Failure>,
-    /// Its text.
+    /// Text for a terminal.
     pub text: String,
-    /// SVG or page that shows it, if there is one.
+    /// SVG or HTML page that shows the result, if there is one.
     pub picture: Option<String>,
     /// Error with which the program ends after printing the result, for example if a task does not insert.
     pub failure: Option<Failure>,
@@ -41,7 +41,7 @@ pub struct Output {
 impl Output {
     /// Returns a result with its text.
     pub fn new(text: String, value: impl Serialize) -> Self {
-        // A value, so that the last of two flattened parts with the same key wins.
+        // Not serialized directly: in a `Value`, the last of two flattened fields with the same key wins.
         let value = serde_json::to_value(value);
         let value = value.map_err(|error| Failure::running(error.to_string()));
         Output { value, text, picture: None, failure: None }
@@ -69,20 +69,20 @@ impl From<String> for Output {
 pub struct CallResult {
     /// Output of `--json`.
     pub json: String,
-    /// SVG or page that shows the result, if there is one.
+    /// SVG or HTML page that shows the result, if there is one.
     pub picture: Option<String>,
 }
 
 /// A command of the program.
 #[derive(Clone, Copy)]
 pub struct Command {
-    /// Words that select it: `["task", "new"]`.
+    /// Words that select the command: `["task", "new"]`.
     pub path: &'static [&'static str],
-    /// Adds its options to a command of clap.
+    /// Adds the options to a command of clap.
     pub augment: fn(clap::Command) -> clap::Command,
-    /// Runs it and prints its result; fails if the request does, or with [`Output::failure`].
+    /// Runs the command and prints its result; fails if the request does, or with [`Output::failure`].
     pub print: fn(&ArgMatches, Program) -> Result<(), Failure>,
-    /// Runs it for another program.
+    /// Runs the command for another program.
     pub call: fn(&ArgMatches, &Context<'_>) -> Result<CallResult, Failure>,
 }
 
@@ -95,7 +95,7 @@ impl Command {
         Command { path, augment: augment::<R>, print: print::<R>, call: call::<R> }
     }
 
-    /// Returns the command line of this command alone.
+    /// Returns the clap definition of this command alone.
     pub fn clap(&self) -> clap::Command {
         (self.augment)(clap::Command::new(self.path.last().copied().unwrap_or_default()))
     }

@@ -9,7 +9,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 use study::{Recorded, Study};
 
-/// Time for a study to end by itself after it is cancelled.
+/// Grace period: time for a study to end by itself after it is cancelled.
 const GRACE: Duration = Duration::from_millis(400);
 /// Set by Ctrl-C or SIGTERM.
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
@@ -21,7 +21,7 @@ pub struct Context<'a> {
     terminal: Option<Terminal>,
 }
 
-/// Constructor of the command line of the program.
+/// Constructor of the clap definition of the whole command line.
 pub type Program = fn() -> clap::Command;
 
 /// Terminal on which a command was started.
@@ -128,7 +128,7 @@ impl<'a> Context<'a> {
         }
     }
 
-    /// Returns the command line of the program.
+    /// Returns the clap definition of the whole command line.
     ///
     /// # Errors
     /// If the command was not started from a terminal.

@@ -8,11 +8,11 @@ use std::process::{ChildStdin, ExitCode, Stdio};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use study::SOURCES;
 
-/// Environment variable with the hash of the program's sources, for the package.
+/// Environment variable that passes the hash of this program's sources to the package, which compares it with its own.
 const SOURCES_KEY: &str = "FINGER_OPT_SOURCES";
 
-/// Runs a command line, without the program's name, in the Python package, which reports its own errors; returns its
-/// exit code.
+/// Runs the command line `words`, which begins after the program's name, in the Python package and returns the exit
+/// code. The package reports its own errors.
 pub fn run(executor: &str, words: &[OsString]) -> Result<ExitCode, Failure> {
     let python = interpreter();
     let missing = |message: &str| {
@@ -24,8 +24,8 @@ pub fn run(executor: &str, words: &[OsString]) -> Result<ExitCode, Failure> {
         ))
     };
     output(&mut command("import finger_opt")).map_err(|message| missing(&message))?;
-    // The package ends the study when its standard input closes, also if this process is killed. The handler is set
-    // first, since a signal may come as soon as the package runs; it waits until the input is known.
+    // The package ends the study when its standard input closes, also if this process is killed. The signal handler is
+    // installed before the package starts, since a signal may arrive at once; the lock makes it wait for the input.
     let input = Arc::new(Mutex::new(None));
     let watched = Arc::clone(&input);
     let mut held = locked(&input);

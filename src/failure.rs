@@ -19,7 +19,7 @@ pub enum Failure {
     Input(anyhow::Error),
     /// A bad task file or an unknown task: exit code 2.
     Task(anyhow::Error),
-    /// An error while running: exit code 1.
+    /// A runtime error, for example a file that cannot be written: exit code 1.
     Run(anyhow::Error),
     /// Cancelled, with a hint on how to continue, if that is possible: exit code 1.
     Interrupted(Option<String>),
@@ -29,7 +29,7 @@ fn place<E: Placed + Error + 'static>(error: &(dyn Error + 'static)) -> Option<P
     error.downcast_ref::<E>().map(Placed::place)
 }
 
-/// Functions that return the place of an error, one for each type of error that has one.
+/// Functions that return the place of an error (file, key and line), one for each type of error that has one.
 const PLACED: [fn(&(dyn Error + 'static)) -> Option<Place>; 7] = [
     place::<InputError>,
     place::<RequestError>,
@@ -49,7 +49,7 @@ impl Failure {
         }
     }
 
-    /// Returns the place of the problem in the input, as far as it is known.
+    /// Returns the file, key and line of the problem in the input, as far as they are known.
     pub fn place(&self) -> Place {
         let error = match self {
             Failure::Input(error) | Failure::Task(error) | Failure::Run(error) => error,
@@ -93,7 +93,7 @@ impl Failure {
         let value = context(ContextKind::InvalidValue);
         Failure::usage(match (option, value, text.split_once("': ")) {
             (Some(option), Some(value), Some((_, why))) => {
-                // The text of clap for a range is `0 is not in 1..=10000`.
+                // The message of clap for a range is `0 is not in 1..=10000`.
                 let range =
                     why.split_once(" is not in ").and_then(|(_, range)| range.split_once("..="));
                 let range =
@@ -115,13 +115,13 @@ impl Failure {
         Failure::Task(error.into())
     }
 
-    /// Returns an error while running with this text.
+    /// Returns a runtime error with this text.
     pub fn running(message: impl Into<String>) -> Self {
         Failure::Run(anyhow::Error::msg(message.into()))
     }
 }
 
-/// Replaces the standard library's errors of numbers in a text of clap by the accepted values.
+/// Replaces the standard library's errors of number parsing in a message of clap by the accepted values.
 pub(crate) fn plain_number_errors(text: &str) -> String {
     const PROBLEMS: [(&str, &str); 6] = [
         ("invalid digit found in string", "must be a whole number, 0 or above"),

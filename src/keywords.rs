@@ -8,7 +8,7 @@ use serde_json::{Map, Value};
 use std::ffi::OsString;
 
 /// Runs a command by its name (`task new`) with its options as keywords, with underscores for hyphens. Keywords
-/// with a dot are those of `--set`; `null` and `false` leave an option out.
+/// with a dot are passed to `--set`; `null` and `false` leave an option out.
 ///
 /// The keywords are parsed as a command line, so that defaults and bounds are declared once.
 ///
@@ -34,7 +34,7 @@ pub fn call(
 /// # Errors
 /// If there is no such option, or a value cannot be used.
 pub fn request<R: Args>(keywords: &Map<String, Value>) -> Result<R, Failure> {
-    // Options of a study conflict with this one.
+    // Declared for the options that conflict with `--json`.
     let json = Arg::new("json").long("json").action(ArgAction::SetTrue);
     let mut program = R::augment_args(clap::Command::new("request").arg(json)).no_binary_name(true);
     program.build();
@@ -66,7 +66,7 @@ fn words(program: &clap::Command, keywords: &Map<String, Value>) -> Result<Vec<O
             }
             value => vec![joined(value, arg)],
         };
-        // The default value is accepted even without the other options that the keyword requires.
+        // A default value is left out: given explicitly, it could require other options.
         let default = arg.get_default_values().iter().map(|value| value.to_string_lossy());
         if values.iter().map(String::as_str).eq(default) {
             continue;
@@ -84,7 +84,7 @@ fn words(program: &clap::Command, keywords: &Map<String, Value>) -> Result<Vec<O
             (false, _) => words.extend(values.iter().map(|value| format!("--{name}={value}"))),
         }
     }
-    // Positional arguments follow.
+    // Ends the options; positional arguments follow.
     words.push("--".to_owned());
     Ok(words.into_iter().chain(positional).map(OsString::from).collect())
 }

@@ -1,15 +1,15 @@
-//! Lines that fit a terminal.
+//! Layout of text output: labelled lines, wrapped to the width of a terminal.
 
 use report::answer::lines::Line;
 use std::path::PathBuf;
 
-/// Columns of a terminal.
+/// Assumed width of a terminal, columns.
 const COLUMNS: usize = 80;
-/// Column of the text of a line, after its name.
+/// Column in which the text of a line begins, after its label.
 const INDENT: usize = 14;
 
-/// Wraps lines to the terminal, indented below their text: after a comma or before a bracket if there is
-/// one in the second half, else at a space.
+/// Wraps lines to 80 columns and indents the continuation to the column of the text. Breaks after a comma or
+/// semicolon or before a bracket if there is one in the second half of the line, else at a space.
 pub fn wrapped(text: &str) -> String {
     text.split_inclusive('\n').map(wrapped_line).collect()
 }
@@ -39,7 +39,7 @@ pub fn wrote<'a>(files: impl IntoIterator<Item = &'a PathBuf>) -> String {
     files.into_iter().map(|file| format!("wrote         {}\n", file.display())).collect()
 }
 
-/// Returns lines as text, aligned in two columns.
+/// Returns pairs of label and text as lines, aligned in two columns.
 pub fn lines(lines: impl IntoIterator<Item = Line>) -> String {
     lines.into_iter().map(|(name, text)| format!("{name:<13} {text}\n")).collect()
 }

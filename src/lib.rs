@@ -25,9 +25,9 @@
 //! ```
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
-// These macros panic if the stream is closed; `terminal` prints instead.
+// The printing macros panic if the stream is closed; `terminal` prints instead.
 #![deny(clippy::print_stdout, clippy::print_stderr)]
-// A panic is a defect; invalid input gives an error.
+// A panic is a defect of the program; invalid input gives an error.
 #![cfg_attr(not(test), deny(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
 pub mod command;

@@ -26,7 +26,7 @@ pub fn reference(program: clap::Command) -> String {
     page
 }
 
-/// Returns all commands with their options, with Python's names; `hidden` are options for other programs only.
+/// Returns all commands and options, with their names in Python; hidden options are for other programs only.
 pub fn commands(mut program: clap::Command) -> Vec<Value> {
     fn below(command: &clap::Command, path: &str, found: &mut Vec<Value>) {
         let nested =

@@ -1,4 +1,4 @@
-//! The program `optimize`: arguments in, the output of one command out.
+//! The program `optimize`: parses its arguments, applies the project file and runs one command.
 
 use crate::command::Command;
 use crate::commands::{COMMANDS, study};
@@ -50,7 +50,7 @@ static VERSION: LazyLock<String> = LazyLock::new(|| {
     format!("{version} ({commit}, sources {})", &::study::SOURCES[..8])
 });
 
-/// Returns the command line of the program.
+/// Returns the clap definition of the whole command line.
 pub fn program() -> clap::Command {
     let root = clap::Command::new("optimize")
         .version(VERSION.as_str())
@@ -106,11 +106,11 @@ fn run(words: &[OsString]) -> Result<ExitCode, Failure> {
             say(plain_number_errors(&usage.render().to_string()).trim_end());
             return Ok(ExitCode::from(2));
         }
-        // Help and version.
+        // clap returns help and version as errors.
         Err(shown) => shown.exit(),
     };
     let (command, matches) = chosen(&matches)?;
-    // Only a study has this option.
+    // Only a study has the option `--executor`.
     match matches.try_get_one::<String>("executor").ok().flatten() {
         Some(executor) => {
             let word = |set: &OptionDefault| format!("--{}={}", set.option, set.value).into();
@@ -122,7 +122,7 @@ fn run(words: &[OsString]) -> Result<ExitCode, Failure> {
     }
 }
 
-/// Returns the command line with the defaults of the project file, which are named on standard error.
+/// Reports the defaults of the project file on standard error; returns the clap definition with them, and the defaults.
 fn with_project(
     program: clap::Command,
     words: &[OsString],

@@ -1,5 +1,4 @@
-//! Progress on standard error, through all phases: a bar on a terminal, a line every few seconds
-//! elsewhere.
+//! Progress on standard error of all phases of a command: a bar on a terminal, a line every few seconds elsewhere.
 
 use crate::studies::best_so_far::BestSoFar;
 use crate::terminal::say;
@@ -10,52 +9,53 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 use study::{Recorded, Study};
 
-/// A part of a long phase.
+/// Progress of a long phase that has several parts.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Part {
-    /// Phase and object: `confirming 10 %, 26°`.
+    /// Phase and its object, for example a design: `confirming 10 %, 26°`.
     pub what: String,
-    /// Parts of the phase that are done.
+    /// Number of parts done.
     pub done: usize,
-    /// Parts of the phase.
+    /// Total number of parts of the phase.
     pub of: usize,
-    /// Cost of such a part, in evaluations of the search, roughly.
+    /// Approximate cost of a part, in multiples of one evaluation of the search.
     pub cost: f64,
 }
 
-/// Costs of the parts, in evaluations of the search, measured on usb and ket8; only for the estimate of the
-/// time left.
+/// Computing time of a part in multiples of one evaluation of the search, measured on the tasks usb and ket8. Used only
+/// to estimate the time left.
 pub mod cost {
-    /// A design whose ends are repeated.
+    /// Confirmation of a design by repeated trials at the ends of its window.
     pub const REPEATED: f64 = 4.0;
-    /// A design that is walked.
+    /// Confirmation of a design whose window is searched step by step.
     pub const WALKED: f64 = 12.0;
-    /// A simulation for an emulator.
+    /// A simulation to fit the emulator of a bench prediction.
     pub const SIMULATION: f64 = 1.2;
-    /// A calibration of the leave-one-out check.
+    /// A calibration with one finger left out, to validate a bench prediction.
     pub const FOLD: f64 = 4.0;
 }
 
-/// Time between two lines without a terminal.
+/// Interval between two lines if standard error is not a terminal.
 const EVERY: Duration = Duration::from_secs(3);
-/// Longest time of a result that comes from the cache.
+/// Duration up to which a result counts as read from the cache.
 const CACHED: Duration = Duration::from_millis(5);
-/// Typical numbers of designs that are repeated and walked.
+/// Typical numbers of designs confirmed at a cost of [`cost::REPEATED`] and of [`cost::WALKED`].
 const CONFIRMED: [f64; 2] = [5.0, 1.5];
 
-/// Progress of a study or a calibration, counted in evaluations of the search.
+/// Progress of a study or a calibration. Work is in multiples of one evaluation of the search.
 pub struct Progress {
     bar: Option<ProgressBar>,
     shown: bool,
     printed: Instant,
     /// End of the last part.
     last: Instant,
-    /// Work done since it began, and estimated work left.
+    /// Work done.
     done: f64,
+    /// Estimated work left.
     left: f64,
-    /// Work that took time, unlike results from the cache, and the time that it took.
+    /// Work that was computed, not read from the cache, and its duration.
     computed: (f64, Duration),
-    /// Number of evaluations of a study, unless it stops early, and the best so far.
+    /// Total number of evaluations of a study, `None` if it may stop early, and its best designs so far.
     search: Option<(Option<u64>, BestSoFar)>,
 }
 
@@ -76,7 +76,7 @@ impl Progress {
         progress
     }
 
-    /// Returns the progress through so many evaluations' worth of work.
+    /// Returns the progress of work that costs `left` evaluations; `shown` makes it visible.
     pub fn of(left: f64, shown: bool) -> Self {
         let bar = || ProgressBar::new(left.ceil() as u64);
         let bar = (shown && stderr().is_terminal())
@@ -101,11 +101,11 @@ impl Progress {
         self.step(1.0, &what, Some(done) == budget);
     }
 
-    /// Adds a part of this cost; the last of a phase is always shown.
+    /// Adds a part of this cost and shows the progress; after the last part of a phase a line is written in any case.
     fn step(&mut self, cost: f64, what: &str, last: bool) {
         let left = self.time_left(cost, self.last.elapsed());
         self.last = Instant::now();
-        // A study that settles can take longer than expected; nothing is known then.
+        // A study that may stop early can take longer than expected; the time left is then unknown.
         let about = |shown: String| match left < Duration::from_secs(1) {
             true => what.to_owned(),
             false => format!("{what}, about {shown} left"),
@@ -120,7 +120,7 @@ impl Progress {
         }
     }
 
-    /// Counts a part of this cost that took so long; returns the time left, by the parts that were not cached.
+    /// Adds a part of this cost and duration; returns the time left, extrapolated from the parts that were not cached.
     fn time_left(&mut self, cost: f64, took: Duration) -> Duration {
         self.done += cost;
         self.left = (self.left - cost).max(0.0);
@@ -175,13 +175,13 @@ impl Drop for Busy {
         self.spinner.iter().for_each(ProgressBar::finish_and_clear);
         if let Some((sender, lines)) = self.lines.take() {
             drop(sender);
-            // It only writes lines.
+            // A panic of this thread is ignored, since it only writes progress.
             let _ = lines.join();
         }
     }
 }
 
-/// Sets the template of a bar, which is drawn twice a second.
+/// Sets the template of a bar or spinner, and redraws it twice a second.
 fn styled(bar: ProgressBar, template: &str) -> ProgressBar {
     if let Ok(style) = ProgressStyle::with_template(template) {
         bar.set_style(style);

@@ -35,9 +35,9 @@ pub struct Settings {
 /// Project file and its contents.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Project {
-    /// Its path.
+    /// Path of the file.
     pub file: String,
-    /// Its keys; relative paths are changed to paths from the current folder.
+    /// Keys with their values; paths relative to the folder of the file are made relative to the current folder.
     pub settings: Settings,
 }
 
@@ -46,12 +46,12 @@ pub struct Project {
 pub struct OptionDefault {
     /// Name of the option, or of the positional argument for a measurement file.
     pub option: &'static str,
-    /// Its value.
+    /// Value as text.
     pub value: String,
 }
 
 impl Project {
-    /// Returns the project of the current folder: the file in it or in the nearest folder above.
+    /// Returns the project of the current folder: the project file in it or in the nearest parent folder.
     ///
     /// # Errors
     /// If the file is invalid.
@@ -92,7 +92,7 @@ impl Project {
         let accepts_missing = ["next", "add"].contains(&name);
         let measurements = measurements.filter(|file| accepts_missing || exists(file));
         let file = (["add", "check"].contains(&name) && !takes("svg")).then_some("file");
-        // A study with other goals does not use measurements.
+        // A study with another objective, constraints or several tasks does not use measurements.
         let other = ["objective", "constraint", "aggregate"].into_iter().any(&given);
         let bench = takes("measurements").then_some("measurements").filter(|_| !other);
         let measured = measurements.is_some() && bench.is_some() || given("measurements");
@@ -118,7 +118,7 @@ impl Project {
         .collect()
     }
 
-    /// Returns the file and the options set by it: `finger-opt.toml sets task usb, robot ur5e`.
+    /// Returns the file and the options that it sets as text: `finger-opt.toml sets task usb, robot ur5e`.
     pub fn words(&self, defaults: &[OptionDefault]) -> String {
         let set =
             defaults.iter().map(|OptionDefault { option, value }| format!("{option} {value}"));
@@ -137,7 +137,7 @@ fn exists(file: &str) -> bool {
     PathBuf::from(file).is_file() || MEASUREMENTS.iter().any(|shipped| shipped.name == file)
 }
 
-/// Sets the defaults in the command of this path; returns the command line with them.
+/// Returns the clap definition with these defaults in the command selected by `path`.
 pub fn with_defaults(program: Command, path: &[String], defaults: &[OptionDefault]) -> Command {
     if let [name, below @ ..] = path {
         return program.mut_subcommand(name, |command| with_defaults(command, below, defaults));

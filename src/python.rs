@@ -1,4 +1,4 @@
-//! Python interpreter with the installed package.
+//! Calls of the installed Python package in its interpreter.
 
 use input::{InputError, Place};
 use std::ffi::OsString;
@@ -6,24 +6,23 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::sync::OnceLock;
 
-/// Environment variable with the path of another interpreter than `python3`.
+/// Environment variable with the path of the interpreter.
 pub const PYTHON: &str = "FINGER_OPT_PYTHON";
 /// Environment variable that excludes the current folder from imports, also in child processes.
 const SAFE_PATH: (&str, &str) = ("PYTHONSAFEPATH", "1");
 /// Code with the same effect for Python 3.10, which ignores the variable.
 const SAFE: &str = "import sys; sys.path[:] = filter(None, sys.path); ";
 
-/// Interpreter in which this library is loaded.
+/// Path of the interpreter that loaded this library; set by the Python package.
 pub static OWN: OnceLock<OsString> = OnceLock::new();
 
-/// Returns the interpreter: that of the environment variable, else that in which this library is loaded, else
-/// `python3`.
+/// Returns the interpreter: that of the environment variable, else the one that loaded this library, else `python3`.
 pub fn interpreter() -> OsString {
     let own = || OWN.get().cloned().unwrap_or_else(|| "python3".into());
     std::env::var_os(PYTHON).unwrap_or_else(own)
 }
 
-/// Format of files that the package reads by one of its extras.
+/// File format that the package reads if one of its extras (optional dependencies) is installed.
 pub struct Format {
     /// Name with its article: `a STEP file`.
     pub name: &'static str,
@@ -31,12 +30,12 @@ pub struct Format {
     pub extra: &'static str,
     /// Body of a `try` statement, indented by four spaces, that prints the contents of the file `sys.argv[1]`.
     pub reader: &'static str,
-    /// Alternative without the package, as the last clause of the error.
+    /// What to do without the package, as the last clause of the error.
     pub otherwise: &'static str,
 }
 
 impl Format {
-    /// Returns the output of the reader for the file at `path`, and its warnings; messages name it `file`.
+    /// Returns the output of the reader for the file at `path`, and its warnings; messages contain `file` for the path.
     ///
     /// # Errors
     /// If it cannot read the file, or the package or its extra is not installed.
@@ -68,7 +67,7 @@ impl Format {
 /// Runs a command without input and returns its standard output and standard error.
 ///
 /// # Errors
-/// If it fails, with the last line of its standard error.
+/// If it cannot be started or fails; the error is then the last line of its standard error.
 pub fn output(command: &mut Command) -> Result<(Vec<u8>, String), String> {
     let done = command.stdin(Stdio::null()).output().map_err(|error| error.to_string())?;
     let messages = String::from_utf8_lossy(&done.stderr).into_owned();

@@ -1,4 +1,4 @@
-//! Standard output and standard error, without control characters.
+//! Standard output and standard error: control characters are escaped; on a terminal labels are coloured.
 
 use crate::failure::Failure;
 use clap::builder::styling::{AnsiColor, Style};
@@ -17,7 +17,7 @@ pub fn print(text: &str) -> Result<(), Failure> {
 }
 
 /// Returns text for a stream: control characters escaped (a carriage return would overwrite the line), and coloured if
-/// the stream takes colours.
+/// the stream supports it.
 fn shown(text: &str, stream: &impl IsTerminal) -> String {
     let text = visible(text).replace('\r', "\\r");
     if takes_colours(stream) { coloured(&text) } else { text }
@@ -28,17 +28,17 @@ pub fn say(text: &str) {
     let _ = writeln!(io::stderr(), "{}", shown(text, &io::stderr()));
 }
 
-/// Returns whether a stream takes colours: a terminal, unless `NO_COLOR` is set or `TERM` is dumb.
+/// Returns whether a stream supports colours: a terminal, unless `NO_COLOR` is set or `TERM` is `dumb`.
 fn takes_colours(stream: &impl IsTerminal) -> bool {
     let set = |name| std::env::var_os(name).filter(|value| !value.is_empty());
     let dumb = || set("TERM").is_some_and(|term| term == "dumb");
     stream.is_terminal() && set("NO_COLOR").is_none() && !dumb()
 }
 
-/// Column of the text of a line, after its name.
+/// Column in which the text of a line begins, after its label: `ends          jammed`.
 const INDENT: usize = 14;
 
-/// Returns text with coloured names of lines, errors and warnings.
+/// Returns text with coloured labels, `error:` and `warning:`.
 fn coloured(text: &str) -> String {
     text.split_inclusive('\n').map(coloured_line).collect()
 }
@@ -51,7 +51,7 @@ fn coloured_line(line: &str) -> String {
         let (name, rest) = line.split_at_checked(INDENT)?;
         let gap = name.ends_with(' ') && !rest.starts_with([' ', '\n']);
         let words = name.starts_with(|c: char| c.is_lowercase()) && !name.contains([':', '=', ',']);
-        // A name of several words has single spaces.
+        // A label has single spaces between its words; two spaces are part of a table.
         (gap && words && !name.trim_end().contains("  ")).then_some(INDENT)
     };
     let (end, style) = match line {

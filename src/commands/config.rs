@@ -33,7 +33,7 @@ impl command::Request for Request {
     }
 }
 
-/// Checks the names of tasks, robot and space. Cell and measurements may still be missing: commands create them.
+/// Checks the names of tasks, robot and space. The other files may not exist yet: commands create them.
 fn check(Project { file, settings }: &Project) -> Result<(), Failure> {
     let Settings { task, robot: of_robot, space, .. } = settings;
     let tasks = task.iter().flat_map(|tasks| tasks.split(',')).map(|name| read_task(name).err());

@@ -1,4 +1,4 @@
-//! `optimize evaluate`: measures the tolerance window of one finger.
+//! `optimize evaluate`: simulates the tolerance window of one finger.
 
 use crate::command::{self, Output};
 use crate::context::{Context, not_stopped};
@@ -29,7 +29,7 @@ use study::ByRibs;
     after_help = "Example: optimize evaluate --task usb --density 20 --direction 10 --walk"
 )]
 pub struct Request {
-    /// Task, robot, finger model; one task.
+    /// One task, robot and finger model.
     #[command(flatten)]
     pub setup: SetupRequest,
     /// The finger.
@@ -51,7 +51,7 @@ pub struct Request {
     #[arg(long, value_name = "FILE")]
     pub measurements: Option<String>,
     /// Skip the window with stiffness computed from the ribs
-    // Which of the two agrees better with the bench depends on the task (docs/notes/finger.md).
+    // Which of the two finger models agrees better with the bench depends on the task (docs/notes/finger.md).
     #[arg(long, hide = true)]
     pub no_ribs: bool,
 }
@@ -62,7 +62,7 @@ pub struct Evaluated {
     /// The finger on its task.
     #[serde(flatten)]
     pub chosen: ChosenFinger,
-    /// Its window.
+    /// Tolerance window and other simulated values.
     #[serde(flatten)]
     pub evaluation: Evaluation,
     /// Wall-clock duration of the evaluation, s.
@@ -70,10 +70,10 @@ pub struct Evaluated {
     /// Measurements of this finger on the bench.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub measured: Vec<Experiment>,
-    /// Smaller of the largest force of the connector and the stop force of the robot, N.
+    /// Limit of the contact force, N: the smaller of the connector's limit and the robot's stop force.
     #[serde(skip)]
     pub limit_n: f64,
-    /// Bands at the window's ends in which repeats differ, with `--repeat`.
+    /// Bands of offsets at the window's ends in which repeats have different outcomes, with `--repeat`.
     #[serde(serialize_with = "serialize_bands", skip_serializing_if = "Option::is_none")]
     pub bands: Option<Bands>,
     /// The same finger with stiffness computed from its ribs.
@@ -89,7 +89,7 @@ impl command::Request for Request {
 }
 
 impl Request {
-    /// Measures the finger.
+    /// Simulates the tolerance window of the finger.
     ///
     /// # Errors
     /// If an input cannot be used, or the run is cancelled.
@@ -115,7 +115,7 @@ impl Request {
         Ok(Evaluated { chosen, evaluation, bands, computed, wall_s, measured, limit_n })
     }
 
-    /// Returns the setup, and the plan of the measurements under drawn errors.
+    /// Returns the setup, and the plan of the trials under drawn errors.
     pub(crate) fn prepared(&self) -> Result<(Setup, Plan), Failure> {
         let mut setup = self.setup.setup()?;
         if let Some(name) = &self.uncertainty {
@@ -139,8 +139,8 @@ impl Request {
         if self.walk { Search::Walk } else { Search::Strides }
     }
 
-    /// Evaluates the finger with stiffness computed from its ribs, with the start taught if the task's own
-    /// does not insert; `None` if a finger model or a stiffness is given, or if the engine does not support it.
+    /// Evaluates the finger with stiffness computed from its ribs, from a taught start if the nominal start of the task
+    /// fails; `None` if a finger model or a stiffness is given, or if the engine does not support computed fingers.
     fn by_ribs(
         &self,
         setup: &Setup,
@@ -164,13 +164,13 @@ impl Request {
     }
 }
 
-/// Returns the smaller of the largest force of the connector and the stop force of the robot, N.
+/// Returns the limit of the contact force, N: the smaller of the connector's limit and the robot's stop force.
 pub(crate) fn limit_n(setup: &Setup, chosen: &ChosenFinger) -> f64 {
     let stop_n = setup.evaluator.robot.stop_force;
     chosen.specimen.task.limits.force.map_or(stop_n, |force| force.min(stop_n))
 }
 
-/// Serializes the evaluation, or the reason why there is none.
+/// Serializes the evaluation by the ribs, or the reason why there is none.
 fn computed<S: Serializer>(by_ribs: &Option<ByRibs>, serializer: S) -> Result<S::Ok, S::Error> {
     match by_ribs {
         None => serializer.serialize_none(),
@@ -199,7 +199,7 @@ impl Evaluated {
         extents.map(line).chain(advice).collect()
     }
 
-    /// Returns a remark if the ranges by the two finger models differ by more than a factor of two and none was measured.
+    /// Returns a remark if no range was measured and those of both finger models differ by more than a factor of two.
     fn disagreement(&self) -> Option<&'static str> {
         let Some(ByRibs::Measured(tasks)) = &self.computed else { return None };
         if !self.measured.is_empty() {

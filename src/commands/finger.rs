@@ -21,7 +21,7 @@ use report::text_table;
 use serde_json::{Value, json};
 use std::path::PathBuf;
 
-/// Largest drawn force on the pad, N, since displacements are linear.
+/// Largest force on the pad for the drawing, N; the model is linear, so that displacements grow without bound.
 const LARGEST_LOAD_N: f64 = 1000.0;
 
 /// Compute the stiffness of a printed finger from its ribs.
@@ -102,15 +102,15 @@ fn planar(found: &PlanarStiffness) -> [(&'static str, f64, usize); 6] {
     ]
 }
 
-/// Returns an in-plane stiffness as JSON; its matrix is for y, z and rx at the middle of the pad, N/mm, N, N mm.
+/// Returns an in-plane stiffness as JSON; its matrix is for y, z and rx at the middle of the pad, see [`in_mm`].
 fn planar_json(found: &PlanarStiffness) -> Value {
     let mut json: Value = planar(found).into_iter().map(|(key, value, _)| (key, value)).collect();
     json["stiffness_matrix"] = json!(in_mm(found.matrix()));
     json
 }
 
-/// Returns the stiffness of a finger as JSON; `model` is `None` if the stiffness model does not cover this infill, or if
-/// `set` changes the shape.
+/// Returns the stiffness of a finger as JSON; `model` is `None` if the stiffness model does not cover this infill, or
+/// if `--set` changes the shape.
 fn json(geometry: &Geometry, computed: &FingerStiffness, model: Option<&Prediction>) -> Value {
     json!({
         "finger": geometry.finger.name,
@@ -176,13 +176,13 @@ const PLANAR: [&str; 7] = [
     "coupling\ny-z",
 ];
 
-/// Returns the row of an in-plane stiffness, with its name.
+/// Returns the row of an in-plane stiffness; `name` is its first cell.
 fn row(name: &str, found: &PlanarStiffness) -> [String; 7] {
     let [a, b, c, d, e, f] = planar(found).map(|(_, value, places)| format!("{value:.places$}"));
     [name.to_owned(), a, b, c, d, e, f]
 }
 
-/// Converts N/m, N/rad and N m/rad to N/mm, N and N mm.
+/// Converts a stiffness matrix for y, z and rx from N/m, N/rad and N m/rad to N/mm, N/rad and N mm/rad.
 fn in_mm(matrix: &Matrix3<f64>) -> [[f64; 3]; 3] {
     let unit = |i: usize, j: usize| match (i == 2, j == 2) {
         (false, false) => 1.0 / N_PER_MM,

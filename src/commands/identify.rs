@@ -1,4 +1,4 @@
-//! `optimize identify`: identifies the parameters of a cell from the robot's logs.
+//! `optimize identify`: identifies the parameters of a cell (friction, robot stiffness and more) from the robot's logs.
 
 use crate::command::{self, Output};
 use crate::context::{Context, not_stopped};
@@ -105,7 +105,7 @@ impl Request {
         let mut remarks = identification.remarks(&file).map_err(Failure::input)?;
         let found = identification.identify().map_err(Failure::input)?;
         not_stopped(stop)?;
-        // The compared curves are shown even if no parameter is identified, but no cell is written.
+        // Measured and simulated curves are shown even if no parameter is identified, but no cell is written.
         if !found.is_informative() && (self.out.is_some() || found.compared.is_empty()) {
             return Err(undetermined(&remarks));
         }

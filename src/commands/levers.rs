@@ -22,7 +22,7 @@ use std::sync::atomic::AtomicBool;
     after_help = "Example: optimize levers --task rj45 --density 18 --direction 20 --svg rj45.svg"
 )]
 pub struct Request {
-    /// Task, robot, finger model; one task.
+    /// One task, robot and finger model.
     #[command(flatten)]
     pub setup: SetupRequest,
     /// The finger.
@@ -36,7 +36,7 @@ pub struct Request {
 impl command::Request for Request {
     const PROGRESS: bool = true;
 
-    /// Measures the levers, and for comparison the softest and the stiffest infill of the space.
+    /// Simulates the levers, and for comparison the softest and the stiffest infill of the space.
     fn run(&self, context: &Context<'_>) -> Result<Output, Failure> {
         let _busy = context.busy("measuring the levers");
         let setup = self.setup.setup()?;
@@ -49,8 +49,8 @@ impl command::Request for Request {
     }
 }
 
-/// Measures the levers of a design on the setup's task. The stiffness is predicted unless
-/// given; `infill` is the smallest and largest range over infills, mm, if known.
+/// Simulates the levers of a design on the setup's task. The stiffness is predicted unless given; `infill` is the
+/// smallest and largest range over infills, mm, if known.
 pub(crate) fn levers(
     setup: &Setup,
     (design, given): (&Design, Option<Prediction>),

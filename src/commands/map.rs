@@ -26,7 +26,7 @@ use std::sync::atomic::AtomicBool;
     after_help = "Example: optimize map --task usb --density 10 --direction 26 --axes y,yaw --svg map.svg"
 )]
 pub struct Request {
-    /// Task, robot, finger model; one task.
+    /// One task, robot and finger model.
     #[command(flatten)]
     pub setup: SetupRequest,
     /// The finger.
@@ -40,13 +40,13 @@ pub struct Request {
     pub svg: Option<PathBuf>,
 }
 
-/// Map of a finger.
+/// Capture map of a finger: outcomes of insertions over two errors of the start.
 #[derive(Serialize)]
 pub struct Mapped {
     /// The finger on its task.
     #[serde(flatten)]
     pub chosen: ChosenFinger,
-    /// Its map.
+    /// The map.
     #[serde(flatten)]
     pub map: CaptureMap,
 }
@@ -69,7 +69,7 @@ impl command::Request for Request {
     }
 }
 
-/// Traces the map of a finger, a specimen and its design, from this taught start.
+/// Traces the capture map of `specimen`, which has the given design. It is centred on the taught start, if any.
 ///
 /// # Errors
 /// If task, robot and finger cannot be simulated; if `stop` is set meanwhile.

@@ -36,7 +36,7 @@ pub enum Among {
     after_help = "Example: optimize next --task ket8 --measurements bench.csv --count 2"
 )]
 pub struct Request {
-    /// Task and measurements; one task.
+    /// One task and its measurements.
     #[command(flatten)]
     pub bench: BenchRequest,
     /// Number of fingers to print at a time
@@ -54,13 +54,15 @@ pub struct Request {
     pub calibration: CalibrationRequest,
 }
 
-/// Recommended fingers.
+/// Result: the fingers to print next, or the advice to stop, with the state of the measurements.
 #[derive(Serialize)]
 pub struct Advised {
     task: String,
+    /// Number of fingers with a measured range.
     measured: usize,
-    /// Fingers that were printed and insert from no start.
+    /// Fingers that were printed, but of which no range could be measured.
     not_measurable: Vec<Design>,
+    /// Whether the measurement file does not exist yet.
     measurements_missing: bool,
     #[serde(flatten)]
     advice: Advice,

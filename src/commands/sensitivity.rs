@@ -21,7 +21,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
     after_help = "Example: optimize sensitivity --task usb --space codesign --svg usb.svg"
 )]
 pub struct Request {
-    /// Task, robot, space, finger model; one task.
+    /// One task, robot, space and finger model.
     #[command(flatten)]
     pub setup: SetupRequest,
     /// Measure to analyse
@@ -73,7 +73,7 @@ impl Request {
         let errors = setup.uncertainty.as_ref().map(|uncertainty| &uncertainty.errors);
         let factors = inputs(&setup.space, errors).map_err(Failure::usage)?;
         let sample = Sample::new(factors.len(), self.samples as usize, self.seed);
-        // `None` where the nominal start diverged.
+        // `None` where the simulation diverged.
         let value = |unit: &Vec<f64>| {
             if stop.load(Ordering::SeqCst) {
                 return Ok(None);

@@ -1,4 +1,4 @@
-//! `optimize stiffness`: shows the stiffness model and its goodness of fit.
+//! `optimize stiffness`: shows the stiffness model and its leave-one-out errors, or predicts for an infill.
 
 use crate::command::{self, Output};
 use crate::context::Context;
@@ -50,7 +50,7 @@ impl command::Request for Request {
         let predicted = infill.map(predict).transpose().map_err(Failure::input)?;
         let value = predicted.map_or_else(|| shown::json(&model), |predicted| json!(predicted));
         let output = Output::new(shown::table(&model), value);
-        // Drawing a model that computes fingers from their ribs takes seconds.
+        // On a terminal the plot is drawn only on request: for fingers computed from their ribs it takes seconds.
         match self.svg.is_some() || !context.is_terminal() {
             true => output.drawn(shown::svg(&model)?, self.svg.as_ref()),
             false => Ok(output),

@@ -84,7 +84,7 @@ pub struct Request {
     #[arg(long, value_name = "W,W..", value_delimiter = ',', allow_negative_numbers = true)]
     pub weights: Vec<f64>,
     /// Seed; the same seed gives the same study
-    // Limited by the integers of TOML.
+    // TOML has signed 64-bit integers.
     #[arg(long, value_name = "N", allow_negative_numbers = true, default_value_t = 0,
           value_parser = clap::value_parser!(u64).range(0..=i64::MAX as u64))]
     pub seed: u64,
@@ -121,7 +121,7 @@ impl command::Request for Request {
 }
 
 impl Request {
-    /// Starts or continues the study; `workers` is the default batch of a new study.
+    /// Starts or continues the study; `workers` is the default batch size of a new study.
     pub fn open(&self, workers: Option<u64>) -> Result<OpenStudy, Failure> {
         let (setup, config, dir) = self.planned(workers)?;
         let added = measured::new_measurements(&dir, &setup);
@@ -131,7 +131,7 @@ impl Request {
         Ok(OpenStudy { new_measurements: added.unwrap_or(0), ..open })
     }
 
-    /// Writes the study without measuring and returns its folder; an existing study is not changed.
+    /// Writes the study without evaluating designs and returns its folder; an existing study is not changed.
     pub(crate) fn create(&self) -> Result<PathBuf, Failure> {
         let (setup, config, dir) = self.planned(None)?;
         Study::create(&dir, &config, &setup.inputs)?;
@@ -139,7 +139,7 @@ impl Request {
     }
 
     /// Returns the checked setup, configuration and folder of the study without writing anything; `workers` is the
-    /// default batch of a new study.
+    /// default batch size of a new study.
     fn planned(&self, workers: Option<u64>) -> Result<(Setup, StudyConfig, PathBuf), Failure> {
         within("--indifference-mm", self.indifference_mm, &INDIFFERENCES_MM)?;
         if self.priors.is_some() && self.measurements.is_none() {
@@ -173,7 +173,7 @@ impl Request {
         }
         let dir = self.out.clone().unwrap_or_else(|| self.default_folder(&config));
         if self.batch.is_none() {
-            // A resumed study keeps its batch.
+            // A resumed study keeps its batch size.
             let resumed = workers.is_none() || has_begun(&dir);
             let old = read_config(&dir).ok().filter(|_| resumed).map(|config| config.batch);
             config.batch = old.or(workers).unwrap_or(DEFAULT_BATCH).clamp(1, LARGEST_BATCH);
@@ -190,7 +190,7 @@ impl Request {
             let stem = Path::new(name).file_stem().and_then(OsStr::to_str).unwrap_or(name);
             stem.chars().map(safe).collect()
         };
-        // The plus sign separates tasks.
+        // In the name of the folder a plus sign separates the tasks.
         let tasks = config.tasks().map(|name| name.chars().map(safe).collect::<String>());
         let custom = |name: &str, default: &str| (name != default).then(|| word(name));
         let given = |name: &Option<String>| name.as_deref().map(word);

@@ -1,4 +1,4 @@
-//! `optimize tasks`: lists shipped files.
+//! `optimize tasks`: lists the shipped tasks, spaces and uncertainties.
 
 use crate::command::{self, Output};
 use crate::context::Context;
@@ -14,7 +14,7 @@ use serde_json::{Value, json};
 #[command(display_order = 51, after_help = "Example: optimize tasks --json")]
 pub struct Request {}
 
-/// JSON and text of a file.
+/// Entry of the list as JSON and as a line of text.
 type Entry = (Value, String);
 
 impl command::Request for Request {
@@ -34,7 +34,7 @@ impl command::Request for Request {
     }
 }
 
-/// Reads the description of a file.
+/// Returns the entry of a space or of uncertainties: name and description.
 fn entry(Shipped { name, file, text, .. }: &Shipped) -> Result<Entry, Failure> {
     let fields: toml::Table = input::read(text, file).map_err(Failure::input)?;
     let description = fields.get("description").and_then(toml::Value::as_str).unwrap_or_default();
@@ -42,11 +42,11 @@ fn entry(Shipped { name, file, text, .. }: &Shipped) -> Result<Entry, Failure> {
     Ok((json!({"name": name, "description": description}), line))
 }
 
-/// Reads the description of a task and computes its clearance where the plug seats.
+/// Returns the entry of a task: name, description, and clearance of the seated plug, mm.
 fn task(Shipped { name, file, text, .. }: &Shipped) -> Result<Entry, Failure> {
     let source = Source { file: (*file).to_owned(), text: (*text).to_owned() };
     let task = TaskFile::parse(source)?.task;
-    // Two decimals, the accuracy of the seat.
+    // Two decimals, the accuracy of the computed clearance.
     let [x, y] = clearance(&task).map(|length| (length / MM * 100.0).round() / 100.0);
     let description = task.description;
     let line = format!("  {name:<10} {x:.2}, {y:.2} mm  {description}\n");

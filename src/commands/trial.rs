@@ -41,7 +41,7 @@ fn offset(text: &str) -> Result<f64, String> {
     after_help = "Example: optimize trial --task ket12 --density 10 --direction 0 --offset-mm 0.5 --svg trial.svg"
 )]
 pub struct Request {
-    /// Task, robot, finger model; one task.
+    /// One task, robot and finger model.
     #[command(flatten)]
     pub setup: SetupRequest,
     /// The finger.
@@ -79,7 +79,7 @@ pub struct Done {
     pub chosen: ChosenFinger,
     /// Shift of the start along y, mm.
     pub offset_mm: f64,
-    /// Its outcome.
+    /// Simulated trial.
     #[serde(flatten, serialize_with = "whole")]
     pub trial: Trial,
     /// Shift of a taught start relative to that of the task, mm.
@@ -91,7 +91,7 @@ pub struct Done {
     /// Time series from the start of the search, with `--every-s`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub series: Option<Value>,
-    /// Page that plays it, with `--record`.
+    /// HTML page that plays the trial, with the hidden option `--film`.
     #[serde(rename = "film", skip_serializing_if = "Option::is_none")]
     pub page: Option<String>,
 }
@@ -161,7 +161,7 @@ impl Request {
 
 impl Done {
     fn text(&self) -> String {
-        // `repeats       18 inserted, 2 failed: jammed`.
+        // For example `repeats       18 inserted, 2 failed: jammed`.
         let repeats = self.repeats.as_ref().map_or(String::new(), |counts| {
             let counts = counts.iter().map(|(outcome, count)| format!("{count} {outcome}"));
             format!("repeats       {}\n", counts.collect::<Vec<_>>().join(", "))

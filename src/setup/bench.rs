@@ -23,7 +23,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// Default priors.
 pub const DEFAULT_PRIORS: &str = "bench";
 
-/// Tasks and measurements of a bench; without tasks, the task of the measurements.
+/// Tasks and their measurements on a bench; by default, the only task of the measurements.
 #[derive(Debug, Clone, clap::Args)]
 #[command(mut_arg("tasks", |task| task.required(false).default_value("").hide_default_value(true).help(
     "Task: ket8, ket12, rj45, usb, rj45_latch, usb_a, or the path of a task file; several separated by commas \
@@ -61,7 +61,7 @@ pub struct CalibrationRequest {
 
 /// Fingers, simulations and measurements of a calibration.
 pub struct Prepared<'a> {
-    /// Fingers of the tasks, in order.
+    /// Tasks with their fingers and measurements.
     pub subjects: Vec<Subject>,
     /// Meaning of each coordinate of a sample of the posterior.
     pub layout: Layout,
@@ -81,7 +81,7 @@ impl BenchRequest {
 }
 
 impl CalibrationRequest {
-    /// Returns the simulations per task.
+    /// Returns the number of simulations per task.
     pub fn simulations(&self) -> usize {
         usize::from(self.effort.completed(None).simulations)
     }
@@ -113,7 +113,7 @@ impl CalibrationRequest {
     }
 }
 
-/// Returns the progress of a calibration with fingers left out.
+/// Returns the progress of the leave-one-out validation: calibrations with one finger left out.
 pub(crate) fn folds(done: usize, of: usize) -> Part {
     Part { what: "fingers left out".to_owned(), done, of, cost: cost::FOLD }
 }
@@ -124,7 +124,7 @@ pub(crate) struct CalibrationContext<'a> {
     pub setup: &'a Setup,
     /// Priors of the parameters that were not measured.
     pub priors: &'a Priors,
-    /// Simulations per task.
+    /// Number of simulations per task.
     pub simulations: usize,
     /// Seed of the simulations.
     pub seed: u64,
@@ -135,7 +135,8 @@ pub(crate) struct CalibrationContext<'a> {
 }
 
 impl<'a> CalibrationContext<'a> {
-    /// Returns the fingers of the tasks and their parameters; `measurements` is the name of the file.
+    /// Returns the tasks with their fingers and emulators, and the layout of a posterior sample; `measurements` names
+    /// the file in errors.
     pub fn subjects(
         &self,
         measurements: &str,

@@ -54,7 +54,7 @@ pub struct PartsRequest {
 impl PartsRequest {
     /// Returns the file of the plug.
     pub fn plug(&self) -> &Path {
-        // One of the two is required.
+        // clap requires one of the two.
         let given = self.assembly.as_ref().or(self.plug.as_ref());
         given.map_or(Path::new(""), PathBuf::as_path)
     }
@@ -174,7 +174,7 @@ fn quoted(names: &[String]) -> String {
     joined(names.iter().map(|name| format!("`{name}`")))
 }
 
-/// Formats names and sizes of bodies.
+/// Formats names and sizes of bodies; `metres` is the length unit of the file, m.
 fn listed(bodies: &[Body], metres: f64) -> String {
     let size = |body: &Body| {
         let side = |axis| width(extent(body.triangles.iter().flatten(), axis)) * metres / MM;
@@ -183,7 +183,7 @@ fn listed(bodies: &[Body], metres: f64) -> String {
     joined(bodies.iter().map(size))
 }
 
-/// Joins the first items of a list by commas, with the number of the others.
+/// Joins at most [`MAX_LISTED`] items by commas, and appends the number of the others.
 fn joined(items: impl ExactSizeIterator<Item = String>) -> String {
     let more = items.len().saturating_sub(MAX_LISTED);
     let shown = items.take(MAX_LISTED).collect::<Vec<_>>().join(", ");

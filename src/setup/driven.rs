@@ -1,4 +1,4 @@
-//! Simulated insertion driven by a caller.
+//! Simulated insertion whose TCP the caller moves step by step.
 
 use super::finger::FingerRequest;
 use super::request::SetupRequest;
@@ -10,7 +10,7 @@ use insertion::trial::{Driven, State};
 use nalgebra::Vector3;
 use std::sync::atomic::AtomicBool;
 
-/// Returns the error for an engine without a driven simulation.
+/// Returns the error for an engine that cannot be stepped by the caller.
 pub(crate) fn undriven() -> Failure {
     Failure::usage("this engine has no driven simulation; use --engine direct")
 }
@@ -18,7 +18,7 @@ pub(crate) fn undriven() -> Failure {
 /// Grasped part in front of its socket, commanded step by step.
 pub struct Insertion {
     driven: Driven,
-    /// The taught start, m.
+    /// Shift of the taught start along y, m.
     taught: f64,
 }
 

@@ -31,18 +31,18 @@ impl Fingers {
         Ok(Fingers { source, file })
     }
 
-    /// Returns the source from which the fingers of designs are made.
+    /// Returns the finger model.
     pub fn finger_source(&self) -> FingerSource {
         self.source.as_ref().map_or(FingerSource::Paper, |_| self.computed())
     }
 
-    /// Returns fingers computed from the ribs of the file.
+    /// Returns the finger model that computes stiffness from the ribs of the file.
     pub fn computed(&self) -> FingerSource {
         FingerSource::Computed(Box::new(ComputedFingers::new(self.file.clone())))
     }
 }
 
-/// Returns the stiffness measurements for the surrogate: those at `path`, else those that the finger file names.
+/// Returns the data of the stiffness model (surrogate): those at `path`, else the table named in the finger file.
 ///
 /// # Errors
 /// If they cannot be read, or the finger file names none.
@@ -82,13 +82,13 @@ pub fn robot(name: &str) -> Result<Robot, Failure> {
     Robot::parse(&source.text, &source.file).map_err(Failure::input)
 }
 
-/// Stiffness model with the data and the finger of its fit.
+/// Stiffness model with the data and the finger to which it was fitted.
 type Fit = (Source, PrintedFinger, Arc<Model>);
 
 /// Last fit, which the next evaluation usually needs again.
 static LAST: Mutex<Option<Fit>> = Mutex::new(None);
 
-/// Fits the stiffness model to a CSV of measurements of a finger.
+/// Fits the stiffness model (surrogate) to a CSV table of stiffness measurements of a finger.
 pub fn surrogate(data: &Source, finger: &PrintedFinger) -> Result<Arc<Model>, Failure> {
     let last = || LAST.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some((known, of, model)) = &*last()

@@ -1,4 +1,4 @@
-//! Films of trials.
+//! Recordings of trials: a page that plays them (film), a table and a plot.
 
 use crate::context::not_stopped;
 use crate::failure::Failure;
@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 use study::write_file;
 
-/// Outputs of a recorded trial.
+/// Options of a trial: outputs made from its recording.
 #[derive(Debug, Clone, Default, clap::Args)]
 pub struct FilmRequest {
     /// Record the trial: a page that plays it, or a table of every millisecond
@@ -24,8 +24,8 @@ pub struct FilmRequest {
 }
 
 impl FilmRequest {
-    /// Records the trial at this offset and writes the requested outputs; returns the recording, and the page if it
-    /// was requested; `None` twice if no output was requested.
+    /// Records the trial at this offset and writes the requested outputs; returns the recording (`None` if no
+    /// output was requested), and the page if it was requested.
     pub(crate) fn record(
         &self,
         rig: &dyn Rig,
@@ -79,7 +79,7 @@ pub(crate) fn extension(file: &Path) -> String {
     file.extension().unwrap_or_default().to_string_lossy().to_lowercase()
 }
 
-/// Returns the label of a start.
+/// Returns the label of a start shifted along y.
 pub(crate) fn start_label(offset_mm: f64) -> String {
     match offset_mm == 0.0 {
         true => "nominal start".to_owned(),

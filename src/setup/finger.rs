@@ -84,13 +84,13 @@ pub struct FingerRequest {
 
 /// Finger on a task, with the source of its stiffness.
 pub struct ChosenFinger {
-    /// Task and finger.
+    /// Task, finger and robot, ready for simulation.
     pub specimen: Specimen,
     /// Name of the robot.
     pub robot: String,
-    /// Cell, if one is given.
+    /// Cell (robot, friction and other parameters of an installation), if one is given.
     pub cell: Option<Priors>,
-    /// Source of the unmeasured stiffnesses.
+    /// Finger model: source of the stiffnesses that were not measured.
     pub finger_model: FingerModelKind,
     /// Infill and settings; empty if only a stiffness is given.
     pub design: Design,
@@ -106,7 +106,7 @@ impl FingerRequest {
         self.choose_with(setup, &setup.evaluator)
     }
 
-    /// Returns the finger on the task of a setup, with the models of an evaluator.
+    /// Returns the finger on the task of a setup, with the finger model and stiffness model of an evaluator.
     pub(crate) fn choose_with(
         &self,
         setup: &Setup,
@@ -154,7 +154,7 @@ impl FingerRequest {
         })
     }
 
-    /// Returns the settings without the infill; keys of the space must lie within its bounds.
+    /// Returns the settings of `--set`; values of keys of the space must lie within its bounds.
     fn settings(&self, setup: &Setup) -> Result<Design, Failure> {
         let mut set = Design::default();
         for (key, value) in &self.set {
@@ -243,7 +243,7 @@ impl ChosenFinger {
         format!("{design}{stiffness}{finger}{}", remark.unwrap_or_default())
     }
 
-    /// Returns the results of the finger model, if it is not the paper's.
+    /// Returns the values computed by the finger model as text; empty for the model of the paper.
     fn model_text(&self) -> String {
         let Specimen { finger, .. } = &self.specimen;
         if self.finger_model == FingerModelKind::Paper {

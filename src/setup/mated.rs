@@ -1,4 +1,4 @@
-//! Task of a plug and a socket whose files may use different frames, by their mated pose.
+//! Creation of a task from the meshes of a plug and its socket, by their mated pose.
 
 use super::bodies::Parts;
 use crate::commands::task::import::Request;
@@ -24,17 +24,17 @@ const BODIES: [&str; 2] = ["plug", "socket"];
 
 /// Task of a mated pair.
 pub struct MatedTask {
-    /// Task, and the parts left out of it.
+    /// Task, and the interference in the mated pose that was removed from its parts.
     pub made: PairTask,
     /// Unit of the files.
     pub unit: Unit,
     /// Direction of insertion in the file of the socket.
     pub along: Along,
-    /// Axis of that file along which the jaws close.
+    /// Axis of the socket's file along which the jaws close.
     pub jaws: Jaws,
     /// Whether the normals of plug and of socket pointed inward.
     pub inward: [bool; 2],
-    /// Play in x and in y, m.
+    /// Total play of the mated plug in x and in y, m.
     pub play: [f64; 2],
     /// Findings: the subject and a sentence.
     pub findings: Vec<(&'static str, String)>,
@@ -101,7 +101,7 @@ pub fn mated(
         engaged: depth,
         play: [0, 1].map(|i| (across[i], mate.play_m[i])),
     };
-    // In x, between the jaws, length.
+    // Height in x, width between the jaws, length.
     let handle = request.body.map(|size| [size.height, size.width, size.length]);
     let made = task(&pair, &request.name(), like, handle);
     check_drawing(files, &made, &request.out().with_extension("place.svg"))?;

@@ -19,7 +19,7 @@ use study::{BENCH_ROLES, StudyRecord};
 pub struct Measured {
     /// Name of the measurement file.
     pub file: String,
-    /// Its measurements.
+    /// Measurements.
     pub experiments: Vec<Experiment>,
     /// Priors.
     pub priors: Priors,
@@ -46,7 +46,7 @@ pub fn file(name: &str) -> Result<Source, Failure> {
     find("measurement file", MEASUREMENTS, name)
 }
 
-/// Returns whether this is the path of a missing file, which has no measurements yet.
+/// Returns whether this is the path of a file that does not exist yet.
 pub fn is_missing(name: &str) -> bool {
     let path = Path::new(name);
     (name.contains(['/', '\\']) || path.extension().is_some())
@@ -69,7 +69,7 @@ fn own_task(source: &Source, task: &str) -> Result<Option<PathBuf>, Failure> {
     }
 }
 
-/// Returns the only task of a measurement file, by its comment line or as shipped.
+/// Returns the only task of a measurement file: its own task file, named in a comment line, or a shipped one.
 ///
 /// # Errors
 /// If there are several tasks, or the file of the task is unknown.
@@ -98,7 +98,7 @@ pub fn task(source: &Source) -> Result<TaskSource, Failure> {
 const MAX_FINGERS: usize = 200;
 
 /// Reads the measurements of a file and sorts them, since their order determines the random draws. Their tasks are
-/// shipped ones, those in `more`, or have a comment line.
+/// shipped ones, those in `more`, or have a comment line with the path of their file.
 pub fn lines(source: &Source, more: &[&str]) -> Result<Vec<Experiment>, Failure> {
     let shipped = TASKS.iter().chain(COMMERCIAL).map(|task| task.name);
     let own = experiments::own_tasks(&source.text).into_keys().filter(|own| !more.contains(own));
@@ -120,7 +120,7 @@ pub fn lines(source: &Source, more: &[&str]) -> Result<Vec<Experiment>, Failure>
     Ok(found)
 }
 
-/// Checks that there are ranges of the task and that all its fingers lie in the space.
+/// Checks that at least one range of the task was measured and that all measured fingers lie in the space.
 pub fn check(
     file: &str,
     lines: &[Experiment],

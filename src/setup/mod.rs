@@ -55,13 +55,13 @@ pub struct Setup {
     pub task_files: Vec<String>,
 }
 
-/// Roles of the input files other than tasks.
+/// Keys of the input files other than tasks in [`Inputs`].
 const SPACE: &str = "space";
 const ROBOT: &str = "robot";
 const STIFFNESS_DATA: &str = "stiffness";
 const UNCERTAINTY: &str = "uncertainty";
 
-/// Returns the role of a task, counted from 1.
+/// Returns the key of a task in [`Inputs`], counted from 1.
 fn task_role(number: usize) -> String {
     format!("task_{number}")
 }
@@ -75,7 +75,7 @@ impl Setup {
         let tasks: Vec<Source> = (1..).map_while(task).collect();
         let space = input(inputs, SPACE)?;
         let parsed = Space::parse(&space.text, &space.file).map_err(Failure::input)?;
-        // Missing unless fingers are computed.
+        // Only the inputs of a setup with computed fingers contain a finger file.
         let fingers = Fingers::parse(input(inputs, FINGER).ok())?;
         let others = [&input(inputs, ROBOT)?, &input(inputs, STIFFNESS_DATA)?];
         let mut setup = Setup::new(&tasks, (&space, parsed), others, fingers, engine)?;
@@ -124,7 +124,7 @@ impl Setup {
     }
 
     /// Returns an evaluator with stiffnesses computed from the ribs of the shipped finger; `None` if the setup does
-    /// not use the stiffnesses of the paper, or if space, tasks or engine do not support computed ones.
+    /// not use the finger model of the paper, or if space, tasks or engine do not support computed fingers.
     pub(crate) fn by_ribs(&self) -> Option<Evaluator> {
         let own = &self.evaluator;
         if own.fingers.kind() != FingerModelKind::Paper {
@@ -142,7 +142,7 @@ impl Setup {
         Some(evaluator)
     }
 
-    /// Returns the setup with this cell and its robot.
+    /// Returns the setup with the parameters of this cell, including those of its robot.
     pub(crate) fn with_cell(mut self, source: Source, cell: Priors) -> Result<Self, Failure> {
         for row in &cell.parameters {
             self.evaluator.robot.change(row, row.middle());
@@ -217,7 +217,7 @@ impl Setup {
         }
     }
 
-    /// Returns the plan of the `wanted` measurements under errors drawn with this seed.
+    /// Returns the plan of the trials for the `wanted` measures, under errors drawn with this seed.
     ///
     /// # Errors
     /// If there is no distribution of errors.
@@ -254,7 +254,7 @@ fn check_distinct(templates: &[Template]) -> Result<(), Failure> {
     })
 }
 
-/// Parses the file of a cell; it must contain a robot.
+/// Parses a cell file, which must contain a robot.
 pub(crate) fn cell(Source { file, text }: &Source) -> Result<Priors, Failure> {
     let cell = Priors::parse(text, file).map_err(Failure::input)?;
     match cell.robot {

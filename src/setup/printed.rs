@@ -1,4 +1,4 @@
-//! Finger to print, and its measured stiffness.
+//! Finger to print, and its stiffness predicted from measured fingers.
 
 use super::files::DEFAULT_FINGER;
 use super::files::{find, stiffness_data, surrogate};
@@ -20,7 +20,7 @@ pub struct PrintRequest {
     /// Folder of a study: its recommended design
     #[arg(value_name = "DIR", conflicts_with_all = ["density", "direction"])]
     pub dir: Option<PathBuf>,
-    /// Its infill.
+    /// Infill, unless a study is given.
     #[command(flatten)]
     pub infill: InfillRequest,
     /// Finger: finray9, or the path of a finger file [default: the study's, or finray9]
@@ -42,8 +42,8 @@ impl PrintRequest {
         Geometry::new(&finger, &infill(&design, self.phase_mm)).map_err(Failure::input)
     }
 
-    /// Returns the stiffness that the model of measured fingers predicts: in the study, else by the table given in
-    /// the finger file; `None` without a table.
+    /// Returns the stiffness predicted by the stiffness model of the study, else by that of the finger file; `None` if
+    /// the finger file names no table of measured fingers.
     ///
     /// # Errors
     /// See [`PrintRequest::geometry`].
@@ -83,8 +83,8 @@ pub(crate) fn finger_file(name: &str) -> Result<FingerFile, Failure> {
     FingerFile::parse(&source.text, &source.file).map_err(Failure::input)
 }
 
-/// Returns the stiffness predicted by the model of measured fingers whose table the finger file gives; `None`
-/// without a table, for an infill outside the model, or for another shape than the measured one.
+/// Returns the stiffness predicted by the stiffness model of a finger file; `None` if the file names no table of
+/// measured fingers, for an infill outside the model, or for another shape than the measured one.
 pub(crate) fn predicted_stiffness(
     finger: &PrintedFinger,
     design: &Design,

@@ -30,7 +30,7 @@ pub struct RepeatRequest {
 }
 
 impl RepeatRequest {
-    /// Calls `measure` with the repeats of a finger on its task from this taught start, and returns its result.
+    /// Calls `measure` with the varied repeats of a specimen from this taught start, and returns its result.
     pub(crate) fn run<T>(
         &self,
         setup: &Setup,
@@ -49,7 +49,7 @@ impl RepeatRequest {
     }
 }
 
-/// Returns the bands at the ends of a window as lines.
+/// Returns the bands of offsets at the ends of a window in which repeats have different outcomes, as lines.
 pub fn bands_text(bands: &Bands) -> String {
     let width = |band: &Band| {
         band.width_mm().map_or("more than 2 mm".to_owned(), |width| format!("{width:.1} mm"))
@@ -76,7 +76,7 @@ pub fn bands_text(bands: &Bands) -> String {
     )
 }
 
-/// Serializes bands by the keys of `--json`.
+/// Serializes bands with the keys of `--json`.
 ///
 /// # Errors
 /// Those of the serializer.

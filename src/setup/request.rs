@@ -1,4 +1,4 @@
-//! Options for tasks, space, robot and finger model.
+//! Options for tasks, space, robot, cell, stiffness data, engine and finger model.
 
 use super::Setup;
 use super::files::{DEFAULT_FINGER, Fingers, find, stiffness_data};
@@ -28,13 +28,14 @@ pub const DEFAULT_SPACE: &str = "infill";
 pub enum TaskSource {
     /// Shipped task, or path of a task file.
     Named(String),
-    /// Text of a task file, and its name in messages.
+    /// Text of a task file passed by another program, and its name in messages.
     Given(Source),
 }
 
 impl TaskSource {
-    /// Returns the tasks of a list of names separated by commas, or the single file whose path contains commas.
-    /// Other programs pass names and texts as JSON after a NUL, which no command line can contain.
+    /// Returns the tasks of a comma-separated list of names; the path of an existing file is a single task, even if it
+    /// contains commas. Other programs pass a JSON array of names and texts after a NUL, which cannot occur on a
+    /// command line.
     pub fn list(names: &str) -> Vec<Self> {
         if let Some(given) =
             names.strip_prefix('\0').and_then(|json| serde_json::from_str(json).ok())
@@ -48,17 +49,17 @@ impl TaskSource {
         names.split(',').map(|name| TaskSource::Named(name.trim().to_owned())).collect()
     }
 
-    /// Returns the task of a name, or the task passed by another program.
+    /// Returns the task of a name, or the task passed by another program as in [`TaskSource::list`].
     pub fn single(name: &str) -> Self {
         let given = name.starts_with('\0').then(|| TaskSource::list(name));
         let given = given.and_then(|given| <[TaskSource; 1]>::try_from(given).ok());
         given.map_or_else(|| TaskSource::Named(name.to_owned()), |[task]| task)
     }
 
-    /// Reads the task file without checking it.
+    /// Reads the task file, with the text of its parts file appended, without checking it.
     ///
     /// # Errors
-    /// If there is no such task or file.
+    /// If there is no such task or file, or the parts file cannot be read or has changed.
     pub fn read(&self) -> Result<Source, Failure> {
         let source = match self {
             TaskSource::Named(name) => {
@@ -75,7 +76,7 @@ impl TaskSource {
 pub struct SetupRequest {
     /// Task: ket8, ket12, rj45, usb, rj45_latch, usb_a, or the path of a task file; a study may have several, separated
     /// by commas
-    // With the full path of `Vec` the whole list is a single value of the option.
+    // clap takes a field of type `Vec` for a repeated option, but not `std::vec::Vec`: one value is the whole list.
     #[arg(long = "task", value_name = "NAME", value_parser = |names: &str| Ok::<_, Infallible>(TaskSource::list(names)))]
     pub tasks: std::vec::Vec<TaskSource>,
     /// Search space: infill, codesign, finger, or the path of a space file
@@ -101,7 +102,8 @@ pub struct SetupRequest {
     pub start: Option<StartRule>,
 }
 
-/// Source of the unmeasured stiffnesses of a finger.
+/// Finger model: source of the remote centre of compliance and of the stiffnesses that were not measured, for example
+/// in tilting.
 #[derive(Debug, Clone, clap::Args)]
 pub struct FingerModelRequest {
     /// Source of a finger's remote centre and unmeasured stiffnesses [default: paper; computed for a
@@ -182,7 +184,7 @@ impl SetupRequest {
 }
 
 impl FingerModelRequest {
-    /// Returns the source of fingers without a search space.
+    /// Returns the finger model of a command without a search space.
     ///
     /// # Errors
     /// If the finger file is invalid.
@@ -190,8 +192,8 @@ impl FingerModelRequest {
         Ok(Fingers::parse(self.file(None)?)?.finger_source())
     }
 
-    /// Returns the finger file if fingers are computed, which a space with parameters of the printed finger
-    /// requires.
+    /// Returns the finger file; `None` for the model of the paper. A space with shape parameters of the printed finger
+    /// requires computed fingers.
     fn file(&self, space: Option<&Space>) -> Result<Option<Source>, Failure> {
         let shape = |p: &&Variable| is_shape(&p.key);
         let shaped = space.and_then(|space| space.parameters.iter().find(shape));
@@ -210,7 +212,7 @@ impl FingerModelRequest {
     }
 }
 
-/// Reads the file of a cell.
+/// Reads a cell file: robot, friction and other parameters of an installation.
 fn cell(path: &str) -> Result<(Source, Priors), Failure> {
     let text = read_text(Path::new(path), LARGEST_INPUT)
         .map_err(|error| Failure::in_file(path, format!("cannot read the cell: {error}")))?;
@@ -219,8 +221,8 @@ fn cell(path: &str) -> Result<(Source, Priors), Failure> {
     Ok((source, cell))
 }
 
-/// Sets the rule for the nominal start in a task file, if one is given. Passes invalid input through; the parser reports
-/// it.
+/// Sets the rule for the nominal start in a task file, if one is given. Passes invalid input through; the parser
+/// reports it.
 fn with_start_rule(task: Source, rule: Option<StartRule>) -> Source {
     let Some(rule) = rule else { return task };
     let Ok(mut table) = task.text.parse::<toml::Table>() else { return task };

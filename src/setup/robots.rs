@@ -1,4 +1,4 @@
-//! Shipped robots with the cells they represent, and their stiffness at the plug.
+//! Shipped robots with the cells that they represent, and their stiffness at the TCP.
 
 use super::files::robot;
 use crate::failure::Failure;
@@ -44,15 +44,15 @@ pub fn robots() -> Result<Vec<CellRobot>, Failure> {
     Ok(robots)
 }
 
-/// Returns stiffness along x, y and z, N/mm (`None` if rigid), and lag, s, of a robot at a task whose frame is
-/// turned about the base's z and whose TCP is tilted about its x, rad.
+/// Returns stiffness along x, y and z of the task, N/mm (`None` if rigid), and lag, s, of a robot; `turn` is the
+/// rotation of the task frame about z of the base, and `tilt` that of the TCP about its x, rad.
 pub(crate) fn stiffness_and_lag(
     robot: &Robot,
     [turn, tilt]: [f64; 2],
 ) -> Result<(Option<[f64; 3]>, f64), Failure> {
     let (stiffness, lag_s) = match robot.mount(turn, tilt).map_err(Failure::input)?.flange {
         Flange::Ideal => return Ok((None, 0.0)),
-        // The damper acts on the rate of the error.
+        // No lag at constant speed: the damper acts on the rate of the position error.
         Flange::Servo(servo) => (servo.stiffness, 0.0),
         Flange::Arm(arm) => {
             let lag_s = if arm.feed_forward { 0.0 } else { arm.time_constant };

@@ -1,4 +1,4 @@
-//! Options of a run that change no result: threads, cache, effort.
+//! Options of a run that change no evaluation: threads, cache, analyses after a study and their effort.
 
 use super::Setup;
 use crate::failure::Failure;
@@ -12,7 +12,7 @@ use study::{AnalysisSettings, BenchEffort, Cache};
 const CACHE: &str = "results/.cache";
 /// Default effort of a bench prediction.
 const EFFORT: BenchEffort = BenchEffort { simulations: 200, samples: 300 };
-/// Sweeps before the first sample, and between two samples.
+/// Sweeps of the sampler before the first sample (`WARM_UP`) and from one sample to the next (`THIN`).
 const WARM_UP: usize = 300;
 const THIN: usize = 4;
 
@@ -30,7 +30,7 @@ pub struct CacheRequest {
 impl CacheRequest {
     /// Returns the folder of the cache, if there is one.
     pub(crate) fn folder(&self, setup: &Setup) -> Option<PathBuf> {
-        // A closed formula is faster than a file.
+        // An engine that does not simulate evaluates a formula, which is faster than reading a file.
         let default = setup.evaluator.engine.simulates().then(|| PathBuf::from(CACHE));
         self.dir.clone().or(default).filter(|_| !self.off)
     }
@@ -98,7 +98,7 @@ pub struct RunRequest {
     pub project: Option<String>,
 }
 
-/// Kinds of executors; an address or a number follows after a colon.
+/// Kinds of executors; after a colon follows an address or a number of jobs or processes.
 const EXECUTORS: [&str; 3] = ["dask", "slurm", "processes"];
 
 fn executor(text: &str) -> Result<String, String> {

@@ -24,10 +24,10 @@ use report::answer::words::mating_force;
 use serde_json::{Value, json};
 use std::sync::atomic::AtomicBool;
 
-/// A task file that was read.
+/// Task file: its text and the task.
 #[derive(Debug, Clone)]
 pub struct TaskFile {
-    /// Its text and its name in messages.
+    /// Text of the file, and its name in messages.
     pub source: Source,
     /// The task.
     pub task: Task,
@@ -140,8 +140,8 @@ pub(crate) fn nominal_start(
     Ok((finger, trial))
 }
 
-/// Returns the measured finger of medium stiffness, shaped for the task, and the recording of its trial at the
-/// nominal start.
+/// Returns the measured finger of medium stiffness, with the finger model of the task, and the recording of its trial
+/// at the nominal start.
 pub(crate) fn nominal_recording(
     task: &Task,
     robot: &Robot,
@@ -155,9 +155,9 @@ pub(crate) fn nominal_recording(
     Ok((shaped, recording))
 }
 
-/// Returns the shipped measured finger of medium compliance stiffness, and the same finger shaped for a task.
+/// Returns the shipped measured finger of medium stiffness, and the same finger with the finger model of a task.
 fn medium(task: &Task) -> (Finger, Finger) {
-    // The shipped file has fingers.
+    // The index is valid, since the shipped table is not empty.
     let middle = representative_designs()[1];
     let finger = Finger::new(middle.compliance, middle.assembly);
     (finger, finger.with_model(&task.finger, 0.0))

@@ -14,8 +14,8 @@ use insertion::trial::engine::EngineKind;
 use serde_json::{Value, json};
 use std::sync::atomic::AtomicBool;
 
-/// Tunes a new task: teaches its start and, if that is not enough, tries the strategies of the families. A task with
-/// problems is not tuned.
+/// Tunes a new task: moves its start to the middle of a medium finger's window (taught start) and, if that is not
+/// enough, tries the strategies of the shipped families of connectors. A task with problems is returned unchanged.
 ///
 /// # Errors
 /// If the task cannot be simulated; if `stop` is set meanwhile.
@@ -33,7 +33,7 @@ pub fn tune_new(
     Ok((Task { strategy, ..task }, Some(tuned)))
 }
 
-/// Tries stages up to `last` until one succeeds.
+/// Tries the stages of tuning up to `last` until the window of one is large enough.
 ///
 /// # Errors
 /// If the task cannot be simulated; if `stop` is set meanwhile.
@@ -50,7 +50,7 @@ pub fn tune_until_success(
     Ok(tuned)
 }
 
-/// Returns a tried strategy as JSON: stage, change, and ranges of a soft, a medium and a stiff finger.
+/// Returns a tried strategy as JSON: stage, change, and ranges of a soft, a medium and a stiff finger, mm.
 pub fn step_json(Step { stage, change, tried, turned_mm }: &Step) -> Value {
     json!({
         "stage": stage,
@@ -67,7 +67,7 @@ pub fn chosen(tuned: Option<&Tuned>) -> Value {
     tuned.map_or(Value::Null, |tuned| step_json(tuned.best()))
 }
 
-/// Returns a line about the chosen strategy.
+/// Returns a line with the label `name` about the chosen strategy.
 pub fn brief(name: &str, tuned: &Tuned) -> String {
     let step = tuned.best();
     let range = outcome(step);
@@ -75,7 +75,7 @@ pub fn brief(name: &str, tuned: &Tuned) -> String {
     layout::lines([(name.to_owned(), text)])
 }
 
-/// Returns the tried strategies as text; those of the search are only counted.
+/// Returns the tried strategies as text; of the numerical search only the number of variations.
 pub fn tried(tuned: &Tuned) -> String {
     let searched = tuned.steps.iter().filter(|step| step.stage == Stage::Search).count();
     let named = tuned.steps.iter().filter(|step| step.stage != Stage::Search);
@@ -94,14 +94,14 @@ pub fn outcome(step: &Step) -> String {
     }
 }
 
-/// Returns the range with a turned socket as text; empty if it was not measured.
+/// Returns the smallest range with the socket turned about z as text; empty if it was not simulated.
 pub fn turned_text(step: &Step) -> String {
     step.turned_mm.map_or(String::new(), |least_mm| {
         format!(", with the socket turned by {YAW_DEG}° at least {least_mm:.1} mm")
     })
 }
 
-/// Returns the ranges, `3.1, 3.3, 2.9 mm`; for a nominal start that fails, its outcome.
+/// Returns the ranges as text, `3.1, 3.3, 2.9 mm`; for a window whose nominal start fails, the outcome instead.
 pub fn ranges(windows: &[Window]) -> String {
     let inserts = |window: &Window| window.nominal == Outcome::Inserted;
     let all = windows.iter().all(inserts);

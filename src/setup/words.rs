@@ -1,4 +1,4 @@
-//! Options whose values are words of a list, or numbers in a range.
+//! Parsers of option values: words of a list, numbers in a range, pairs of numbers.
 
 use clap::builder::{PossibleValue, StringValueParser, TypedValueParser};
 use clap::{Arg, Command, Error};
@@ -8,7 +8,8 @@ use std::fmt::Display;
 use std::marker::PhantomData;
 use std::str::FromStr;
 
-/// Parser of one word of a list, or of several separated by commas; the list is shown in help texts.
+/// Parser of an option by `T::from_str`. Help texts list the words from which a value is made, and the error for an
+/// unknown word suggests the nearest one.
 #[derive(Debug, Clone)]
 pub struct WordParser<T> {
     words: Vec<&'static str>,
@@ -16,7 +17,7 @@ pub struct WordParser<T> {
 }
 
 impl<T> WordParser<T> {
-    /// Returns the parser for these words.
+    /// Returns the parser of values made from these words.
     pub fn new(words: impl IntoIterator<Item = &'static str>) -> Self {
         WordParser { words: words.into_iter().collect(), value: PhantomData }
     }
@@ -43,7 +44,7 @@ impl<T: FromStr<Err: Display> + Clone + Send + Sync + 'static> TypedValueParser 
     }
 }
 
-/// Parses a number that is accepted; `problem` is the error for others.
+/// Parses a number and checks it with `accepted`; `problem` is the error message.
 pub(crate) fn parse_number(
     text: &str,
     accepted: impl Fn(f64) -> bool,
@@ -53,7 +54,7 @@ pub(crate) fn parse_number(
     number.ok_or_else(|| problem.to_owned())
 }
 
-/// Parses a finite number of at least 0 in this unit.
+/// Parses a finite number of at least 0; the error message names `unit`.
 pub(crate) fn parse_at_least_0(text: &str, unit: &str) -> Result<f64, String> {
     let problem = format!("must be a number of at least 0 ({unit})");
     parse_number(text, |number| number.is_finite() && number >= 0.0, &problem)

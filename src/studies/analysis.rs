@@ -1,5 +1,5 @@
-//! Analyses of the recommended finger after a study: levers, capture maps and a second robot. Each is
-//! stored in the study's folder and shown on its page.
+//! Analyses of the recommended finger after a study: levers (one-at-a-time sensitivity of the range), capture maps, and
+//! the window with a second robot. Each is stored in the study's folder and shown on its report page.
 
 use super::open::Ended;
 use super::report;
@@ -48,7 +48,7 @@ struct Stored<T> {
 type Subject = Stored<()>;
 
 impl Subject {
-    /// Returns the recommended finger of a study of one task and objective.
+    /// Returns provenance and recommended design; `None` without one, or for several tasks or objectives.
     fn of(answer: &Answer) -> Option<Self> {
         let record = answer.record;
         let one = !record.config.several_tasks() && record.config.objective.single().is_some();
@@ -56,6 +56,7 @@ impl Subject {
         Some(Stored { provenance: record.segments.last()?.provenance.clone(), design, found: () })
     }
 
+    /// Reads an analysis; `None` if it is missing or valid for another provenance or design.
     fn read<T: DeserializeOwned>(&self, dir: &Path, file: &str) -> Option<T> {
         let Stored { provenance, design, found } = read_analysis(dir, file)?;
         (provenance == self.provenance && design == self.design).then_some(found)
@@ -72,7 +73,7 @@ pub(crate) fn read(dir: &Path, answer: &Answer) -> PostAnalysis {
     let Some(subject) = Subject::of(answer) else { return PostAnalysis::default() };
     let levers: Option<Levers> = subject.read(dir, LEVERS);
     PostAnalysis {
-        // The influence of the infill is the span of the ranges of all evaluations so far.
+        // The ranges over infills are those of all evaluations so far, of which there may be more since the analysis.
         levers: levers
             .map(|found| Levers { infill: answer.spread_mm.unwrap_or(found.infill), ..found }),
         maps: subject.read(dir, MAPS).unwrap_or_default(),
@@ -125,8 +126,8 @@ impl Ended {
     }
 }
 
-/// Returns the windows of the recommended finger with the study's robot and with a second one: the
-/// position-controlled arm if the study's robot is compliant, else the compliant flange.
+/// Returns the windows of the recommended finger with the study's robot and with a second one: the position-controlled
+/// arm if the study's robot is compliant, else the compliant flange. Empty if the finger was not evaluated.
 fn robots(
     setup: &Setup,
     answer: &Answer,

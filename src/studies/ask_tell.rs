@@ -1,4 +1,4 @@
-//! Study whose designs are measured by the caller, for example in a process pool or on a cluster.
+//! Study whose designs are evaluated by the caller, for example in a process pool or on a cluster.
 
 use super::best_so_far::BestSoFar;
 use super::open::{Ended, OpenStudy, cached_evaluator, confirmer, hint, resume_hint};
@@ -19,12 +19,12 @@ use study::{
     Work, WorkError,
 };
 
-/// Open study with its scheduler and the work that is being measured.
+/// Open study with its scheduler and the evaluations in progress.
 pub struct AskTellStudy {
     open: OpenStudy,
     optimizer: Box<dyn Optimizer + Send>,
     scheduler: Scheduler,
-    /// Work being measured, by the number of its proposal.
+    /// Evaluations in progress, by the number of the proposal.
     measuring: BTreeMap<u64, Work>,
     best_so_far: BestSoFar,
     log: ConfirmationLog,
@@ -32,7 +32,7 @@ pub struct AskTellStudy {
 
 /// Next step of the caller.
 pub enum NextStep {
-    /// Measure these proposals: their numbers, and the bytes for [`perform`].
+    /// Evaluate these proposals: number of each, and the encoded work, the argument of [`perform`].
     Measure(Vec<(u64, Vec<u8>)>),
     /// Wait for a result.
     Wait,
@@ -42,14 +42,14 @@ pub enum NextStep {
 
 /// Reason for which a result was rejected.
 pub enum RejectedResult {
-    /// The result is invalid; the work may be repeated.
+    /// The result is invalid; the evaluation may be repeated.
     Refused(WorkError),
     /// The study cannot continue.
     Failed(Failure),
 }
 
 impl AskTellStudy {
-    /// Returns an open study whose designs the caller measures.
+    /// Returns a study whose designs the caller evaluates.
     ///
     /// # Errors
     /// If the optimizer cannot be created.
@@ -61,10 +61,10 @@ impl AskTellStudy {
         Ok(AskTellStudy { open, optimizer, scheduler, measuring, best_so_far, log })
     }
 
-    /// Returns the next step. Designs in the cache are not measured again.
+    /// Returns the next step. Designs in the cache are not evaluated again.
     ///
     /// # Errors
-    /// If the journal holds other designs than are proposed, or cannot be written.
+    /// If the journal contains other designs than the optimizer proposes, or cannot be written.
     pub fn next_step(&mut self, stop: &AtomicBool) -> Result<NextStep, Failure> {
         loop {
             match self.scheduler.next(&self.open.study, &mut *self.optimizer)? {
@@ -109,7 +109,7 @@ impl AskTellStudy {
         self.accept(ProposalResult { number: *number, measured, timing })
     }
 
-    /// Returns the number of a proposal and the bytes of its work.
+    /// Records that a proposal is being evaluated; returns its number and its encoded work.
     fn assign(&mut self, proposal: Proposal) -> Result<(u64, Vec<u8>), Failure> {
         let OpenStudy { study, setup, .. } = &self.open;
         let (number, goals) = (proposal.number, study.config.goals());
@@ -126,7 +126,7 @@ impl AskTellStudy {
         Ok((number, bytes))
     }
 
-    /// Accepts the result of a proposal; returns false if it came before.
+    /// Accepts the result of a proposal; returns false if the proposal already has one.
     ///
     /// # Errors
     /// If the result does not belong to the proposal, or the journal cannot be written.
@@ -148,7 +148,7 @@ impl AskTellStudy {
         taken.map_err(|error| hint(error, study))
     }
 
-    /// Returns the number of evaluations, the expected number in all, and the best so far as text.
+    /// Returns the number of evaluations done, the expected total, and the best value so far as text.
     pub fn progress(&self) -> (usize, u64, String) {
         let study = &self.open.study;
         let done = study.evaluations.len();
@@ -170,13 +170,13 @@ impl AskTellStudy {
         self.open.conclude(ending, &mut self.log, &pool, &Context::silent(stop))
     }
 
-    /// Returns the number of threads for measurements in this process; 0 for one per processor.
+    /// Returns the number of threads of this process; 0 for one per processor.
     pub fn threads(&self) -> usize {
         self.open.run.threads()
     }
 }
 
-/// Last setup with the inputs that determine it: a worker measures many designs of one study.
+/// Last setup with the inputs that determine it, since a worker evaluates many designs of one study.
 static LAST: Mutex<Option<(Value, Arc<Setup>)>> = Mutex::new(None);
 
 fn set_up(work: &Work) -> Result<Arc<Setup>, Failure> {
@@ -192,8 +192,8 @@ fn set_up(work: &Work) -> Result<Arc<Setup>, Failure> {
     Ok(setup)
 }
 
-/// Measures the work of an [`AskTellStudy`] and returns its result, which depends only on the work; `worker` is the
-/// host and process that runs it.
+/// Evaluates the encoded work of an [`AskTellStudy`] and returns the encoded result, which depends only on the work;
+/// `worker` names the host and process that run it.
 ///
 /// # Errors
 /// If the bytes are invalid, this program has another provenance than the study, or the design cannot be

@@ -7,7 +7,7 @@ use study::{Recorded, Study};
 /// Pareto front of the feasible designs so far; with a single objective, its best design.
 pub struct BestSoFar {
     goals: Goals,
-    /// Gains: larger is better.
+    /// Objective values with their sign chosen so that larger is better.
     front: Archive,
 }
 
@@ -19,7 +19,7 @@ impl BestSoFar {
         best_so_far
     }
 
-    /// Adds a design.
+    /// Adds a design, unless it is infeasible or its success rate is only an upper bound (see [`Recorded::raced`]).
     pub fn add(&mut self, recorded: &Recorded) {
         if let Some(values) = recorded.feasible().filter(|_| !recorded.raced()) {
             self.front.add(self.goals.gains(values));
@@ -31,7 +31,7 @@ impl BestSoFar {
         match (self.goals.objectives.single(), self.front.points()) {
             (_, []) if self.goals.constraints.is_empty() => "no value yet".to_owned(),
             (_, []) => "no feasible design yet".to_owned(),
-            // The sign of a gain is its own inverse.
+            // `gains` only changes signs; applied again, it returns the values.
             (Some(measure), [gains, ..]) => {
                 let values = self.goals.gains(gains);
                 format!("best {}", values.first().map_or(String::new(), |&v| measure.show(v)))

@@ -1,4 +1,4 @@
-//! Films of the pairs of trials at the ends of a study's recommended window.
+//! Films at the ends of the recommended design's window: the last trial that inserts and the first that fails.
 
 use crate::failure::Failure;
 use crate::setup::Setup;
@@ -17,9 +17,8 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use study::write_own_file;
 
-/// Records the pair at each end of the windows of the recommended design, the last offset that inserts and
-/// the first that fails, into the study's folder; replaces or removes those of an earlier run. Ends early
-/// once `stop` is set.
+/// Records the pair of trials at each end of the recommended design's windows into the study's folder; replaces or
+/// removes the files of an earlier run. Ends early once `stop` is set.
 pub(crate) fn boundary(
     dir: &Path,
     answer: &Answer,
@@ -27,7 +26,7 @@ pub(crate) fn boundary(
     pool: &ThreadPool,
     stop: &AtomicBool,
 ) -> Result<(), Failure> {
-    // A front has no single finger to show.
+    // A Pareto front has no single finger to show.
     let found =
         answer.record.config.objective.single().and_then(|_| answer.finger_and_evaluations());
     for (at, template) in setup.evaluator.templates.iter().enumerate() {
@@ -44,7 +43,7 @@ pub(crate) fn boundary(
             }
             for (i, file) in files.iter().enumerate() {
                 let Some(texts) = &texts else {
-                    // It may be missing.
+                    // The file may not exist.
                     drop(fs::remove_file(file));
                     continue;
                 };
@@ -58,8 +57,8 @@ pub(crate) fn boundary(
     Ok(())
 }
 
-/// Returns a page of both trials, and a picture of the end of the second; `None` if no trial failed there, or the
-/// engine does not record trials.
+/// Returns a page that plays both trials, and a picture of the final state of the second; `None` if no trial failed at
+/// this end, or the engine does not record trials. `end` is its name, and `outward` the grid step (-1 or 1) towards it.
 fn pair(
     setup: &Setup,
     (template, design): (&Template, &Design),

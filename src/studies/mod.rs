@@ -1,4 +1,4 @@
-//! Studies: opening, running on the threads of this process or measured by the caller, output and reports.
+//! Studies: opening, evaluation of designs on the threads of this process or by the caller, output and reports.
 
 pub mod analysis;
 pub mod ask_tell;

@@ -31,7 +31,7 @@ pub(crate) fn check(config: &StudyConfig) -> Result<(), Failure> {
     }
 }
 
-/// Predicts every finger of the space on the bench and stores the prediction, if there are measurements
+/// Predicts the range of every finger of the space on the bench and stores the prediction, if there are measurements
 /// and it is not stored yet.
 pub(crate) fn predict(
     (study, setup): (&Study, &Setup),

@@ -32,24 +32,24 @@ pub struct OpenStudy {
     pub(crate) study: Study,
     pub(crate) setup: Setup,
     pub(crate) run: RunRequest,
-    /// Plan of the measurements under drawn errors.
+    /// Plan of the trials under drawn errors.
     pub(crate) plan: Plan,
     pub(crate) cache: Option<Cache>,
-    /// Number of new measurements on its task.
+    /// Number of bench measurements of its task that are new since its last run.
     pub new_measurements: usize,
 }
 
 /// Study that has ended.
 pub struct Ended {
-    /// Its folder.
+    /// Folder of the study.
     pub dir: PathBuf,
     /// Record of its evaluations.
     pub record: StudyRecord,
     /// Reason for which it ended.
     pub ending: Ending,
-    /// Evaluations that were in the cache.
+    /// Number of evaluations read from the cache.
     pub cached: u64,
-    /// Failure if no design inserts at the nominal start.
+    /// Error if no design inserts at the nominal start.
     pub unusable: Option<Failure>,
     pub(crate) run: RunRequest,
 }
@@ -68,8 +68,8 @@ impl OpenStudy {
     }
 
     /// Shows the number of new measurements, and a warning for each task to which a part of the cell does not
-    /// apply. Before the first evaluation, it also warns of each given nominal start that fails with the finger of
-    /// medium stiffness.
+    /// apply. Before the first evaluation, it also warns of each nominal start of a task file that fails with a
+    /// finger of medium stiffness.
     ///
     /// # Errors
     /// If the nominal start cannot be simulated.
@@ -153,7 +153,7 @@ impl OpenStudy {
             film::boundary(&dir, &answer, setup, pool, stop)?;
         }
         printable::write(&dir, &answer, &setup.evaluator)?;
-        // Before the page, which shows its picture.
+        // Before the report page, which shows the picture of the failed trial.
         let problem = || unusable::check(&dir, &record, setup, stop).err();
         let unusable = if interrupted() { None } else { problem() };
         report::write(&dir, &answer, &setup.evaluator.surrogate)?;

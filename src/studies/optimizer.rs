@@ -32,8 +32,8 @@ pub(crate) fn optimizer(
     })
 }
 
-/// Returns the point nearest to the numbers of the (first) task if the space changes them: the strategy to improve
-/// on; other parameters are at the middle of their range.
+/// Returns the grid point nearest to the (first) task file, whose strategy is to be improved, as an initial point;
+/// parameters that are not in the file are at the middle of their range. `None` if the space does not change the task.
 fn task_point(setup: &Setup) -> Option<GridPoint> {
     let (parameters, template) = (&setup.space.parameters, setup.evaluator.templates.first()?);
     if !setup.space.changes_task() {
@@ -44,8 +44,8 @@ fn task_point(setup: &Setup) -> Option<GridPoint> {
     Some(GridPoint(parameters.iter().map(|p| p.nearest(value(p))).collect()))
 }
 
-/// Returns the points nearest to the measured fingers in a space of printed fingers; the measured ones have
-/// the shape of the finger file.
+/// Returns the grid points nearest to the measured fingers, as initial points in a space with shape parameters; the
+/// measured fingers have the shape of the finger file.
 fn measured_points(setup: &Setup) -> Vec<GridPoint> {
     let parameters = &setup.space.parameters;
     let FingerSource::Computed(fingers) = &setup.evaluator.fingers else { return Vec::new() };

@@ -34,6 +34,6 @@ pub fn run(open: OpenStudy, context: &Context<'_>, all: bool) -> Result<Output, 
     };
     let value = summary(&ended, &answer, &found);
     let failure = failure.or_else(|| ended.unusable.take());
-    // The text that follows the answer.
+    // The answer is already printed.
     Ok(Output { failure, ..Output::new(text::analyses(&found), value) })
 }

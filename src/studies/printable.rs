@@ -38,7 +38,7 @@ pub(crate) fn write(dir: &Path, answer: &Answer, evaluator: &Evaluator) -> Resul
     Ok(())
 }
 
-/// Returns the origin of a finger for its sheet, by the folder of its study: `study usb-gp-seed0`.
+/// Returns the name of a study for the sheet of a finger, by its folder: `study usb-gp-seed0`.
 pub(crate) fn study_name(dir: &Path) -> String {
     let whole = dir.canonicalize().unwrap_or_else(|_| dir.to_owned());
     format!("study {}", whole.file_name().unwrap_or_default().to_string_lossy())

@@ -20,7 +20,7 @@ pub fn recommendation(answer: &Answer) -> Value {
     let one = answer.recommended.as_ref().filter(|_| answer.front.is_none());
     let as_good = one.and_then(|found| found.ties.as_ref());
     keys["equivalent_designs"] = json!(as_good.map(|as_good| as_good.designs.len()));
-    // One decimal, without the rounding error of the subtraction.
+    // Without the rounding error of the subtraction.
     let spread = answer.spread_mm.map(|[low, high]| ((high - low) * 1e6).round() / 1e6);
     keys["spread_mm"] = json!(spread);
     keys
@@ -82,8 +82,7 @@ fn simulated(answer: &Answer) -> Value {
     json
 }
 
-/// Returns the finger that is predicted to be the best on the bench; numbers outside of `bench` are
-/// simulated.
+/// Returns the finger that is predicted to be the best on the bench; values outside the key `bench` are simulated.
 fn on_bench(record: &StudyRecord, found: &BenchPrediction) -> Value {
     let Some(best) = found.best.first() else { return Value::Null };
     let evaluated = record.current().iter().find(|recorded| recorded.design == best.design);

@@ -1,4 +1,4 @@
-//! Tables, plots and page of a study.
+//! Tables, plots and report page of a study.
 
 use super::{analysis, unusable};
 use crate::failure::Failure;
@@ -11,7 +11,7 @@ use report::{self, PageFiles, printer};
 use std::path::Path;
 use study::{EVALUATIONS_CSV, StudyRecord, evaluations_csv, write_own_file};
 
-/// Writes tables, plots and page of the study in a folder again; returns its record.
+/// Writes tables, plots and report page of the study in a folder again; returns its record.
 ///
 /// # Errors
 /// If the study cannot be read or a file cannot be written.
@@ -22,7 +22,7 @@ pub fn rewrite(dir: &Path) -> Result<StudyRecord, Failure> {
     Ok(record)
 }
 
-/// File of the page.
+/// File of the report page.
 pub const PAGE: &str = "report.html";
 /// Size of a plot in its own file, pixels.
 const FILE: (u32, u32) = (880, 480);
@@ -50,7 +50,7 @@ fn page_files(dir: &Path, answer: &Answer) -> PageFiles {
         nominal: read(unusable::PICTURE),
         analyses: analysis::read(dir, answer),
     };
-    // The film that the page shows first is added first, since a page has no room for the films of many tasks.
+    // The film to be shown comes first, since the size of a page is limited and the films of many tasks do not fit.
     let shown = report::preferred(answer);
     let mut ends = ENDS.map(|(end, _)| end);
     ends.sort_by_key(|end| *end != shown);

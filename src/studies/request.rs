@@ -1,4 +1,4 @@
-//! Requests of studies whose designs the caller measures.
+//! Requests of studies whose designs the caller evaluates.
 
 use super::open::OpenStudy;
 use crate::commands::{resume, study};
@@ -21,7 +21,7 @@ impl AnyStudy {
         AnyStudy::Asked(Box::new(request))
     }
 
-    /// Returns the options of the run, and whether all numbers of the answer are printed.
+    /// Returns the options of the run, and whether all numbers on which the answer is based are printed.
     pub fn run_options(&self) -> (&RunRequest, bool) {
         match self {
             AnyStudy::Asked(request) => (&request.run, request.verbose),
@@ -29,7 +29,7 @@ impl AnyStudy {
         }
     }
 
-    /// Opens the study; the default batch of a new one is `workers`.
+    /// Opens the study; `workers` is the default batch size of a new one.
     ///
     /// # Errors
     /// If the request or the folder is invalid.
@@ -40,7 +40,7 @@ impl AnyStudy {
         }
     }
 
-    /// Writes the study without measuring and returns its folder.
+    /// Writes the study without evaluating designs and returns its folder.
     ///
     /// # Errors
     /// If the request is invalid, or the folder holds a study of another configuration or cannot be written.

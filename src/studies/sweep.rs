@@ -24,7 +24,7 @@ pub struct Sweep {
 }
 
 impl Sweep {
-    /// Returns the evaluator of windows; the finger of the request and its repeats are ignored.
+    /// Returns the evaluator for a request; its finger and its repeats are ignored.
     ///
     /// # Errors
     /// If the request is invalid.
@@ -35,12 +35,12 @@ impl Sweep {
         Ok(Sweep { setup, search: windows.search(), plan, cache, pool })
     }
 
-    /// Returns the number of windows that were in the cache.
+    /// Returns the number of windows read from the cache.
     pub fn known(&self) -> u64 {
         self.cache.as_ref().map_or(0, Cache::hits)
     }
 
-    /// Measures fingers.
+    /// Simulates the tolerance windows of fingers.
     ///
     /// # Errors
     /// The error of the first finger that cannot be simulated; if `stop` is set meanwhile.

@@ -10,7 +10,7 @@ use report::answer::{Answer, Front, command, expectation};
 use std::path::Path;
 use study::{Ending, Recorded, StudyRecord};
 
-/// Returns the output of a study that has ended, with `all` numbers of the answer if requested.
+/// Returns the answer of a study that has ended as text; with `all`, every number on which it is based.
 pub fn ended(ended: &Ended, answer: &Answer, all: bool) -> String {
     let verbose = if all { verbose(answer, ended.ending, ended.cached) } else { String::new() };
     answer_text(answer, &ended.dir, &verbose)
@@ -37,7 +37,7 @@ fn answer_text(answer: &Answer, dir: &Path, verbose: &str) -> String {
     format!("{}next          {command}\n              # {why}\n{place}", layout::wrapped(&text))
 }
 
-/// Returns all numbers of the answer.
+/// Returns all numbers on which the answer is based.
 fn verbose(answer: &Answer, ending: Ending, cached: u64) -> String {
     let record = answer.record;
     let config = &record.config;
@@ -61,7 +61,7 @@ fn verbose(answer: &Answer, ending: Ending, cached: u64) -> String {
         text += &layout::lines([lines::accuracy(bench)]);
         text += "by simulation alone:\n";
     }
-    // If none is recommended, the headline gives the reason.
+    // If no design is recommended, the headline gives the reason.
     let found = answer.recommended.as_ref().filter(|_| answer.design_to_print().is_some());
     text += &found.map_or(String::new(), |found| match &answer.front {
         Some(front) => front_text(record, front),

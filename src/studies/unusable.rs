@@ -12,10 +12,10 @@ use study::{StudyRecord, write_own_file};
 
 pub(crate) const PICTURE: &str = "nominal.svg";
 
-/// Checks that a design inserts at the nominal start.
+/// Checks that at least one design inserts at the nominal start of each task.
 ///
 /// # Errors
-/// If none does, with the outcome of the nearest design; if `stop` is set meanwhile.
+/// If none does, with the outcome of the design nearest to an insertion; if `stop` is set meanwhile.
 pub(crate) fn check(
     dir: &Path,
     record: &StudyRecord,

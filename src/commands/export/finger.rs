@@ -182,7 +182,7 @@ fn draw_sheet(request: &PrintRequest, geometry: &Geometry, out: &Path) -> Result
     Ok(write(geometry, &SheetData { origin, ribs: &ribs, measured }))
 }
 
-/// Writes settings for a slicer with the surfaces of outline and base beside them; returns the files of these.
+/// Writes settings for a slicer, and beside them the surfaces of outline and base; returns the files of the surfaces.
 fn settings(out: &Path, geometry: &Geometry, text: &str) -> Result<Vec<PathBuf>, Failure> {
     let title = export::title(geometry);
     let stem = out.file_stem().unwrap_or_default().to_string_lossy();

@@ -23,7 +23,7 @@ use study::write_file;
     after_help = "Example: optimize export mjcf --task usb --density 20 --direction 10 --out scene.xml"
 )]
 pub struct Request {
-    /// Task, robot, finger model; one task.
+    /// One task, robot and finger model.
     #[command(flatten)]
     pub setup: SetupRequest,
     /// The finger.

@@ -44,9 +44,9 @@ impl command::Request for Request {
                 "task": task,
                 "lines": of.len(),
                 "ranges": ranges,
-                // Lower bounds of a range.
+                // Lines with one end only, a lower bound of the range.
                 "bounds": bounds,
-                // Measured windows.
+                // Number of measured windows; a line can contain the mean of several.
                 "repeats": of.iter().map(|line| line.repeats).sum::<u32>(),
             });
             (counts, text)
@@ -59,7 +59,7 @@ impl command::Request for Request {
             text + &format!("{file}: {}, no problems found\n", input::counted(lines, "line"));
         let mut value = json!({"file": file, "lines": lines, "tasks": tasks});
         if self.rows {
-            // By the columns of the file; null where a column is empty.
+            // The keys are the columns of the file; null for an empty cell.
             value["rows"] = json!(found);
         }
         Ok(Output::new(text, value))

@@ -71,7 +71,7 @@ impl command::Request for Request {
     }
 }
 
-/// Simulates a trial and draws its end.
+/// Simulates a trial and draws its final state.
 fn draw(
     (task, infill, offset_mm, grip): Example<'_>,
     context: &Context<'_>,

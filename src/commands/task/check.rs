@@ -1,4 +1,4 @@
-//! `optimize task check`: checks a task file and its nominal start.
+//! `optimize task check`: checks a task file and its nominal start; if that fails, looks for a strategy that inserts.
 
 use crate::command::{self, Output};
 use crate::context::Context;

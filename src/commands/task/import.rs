@@ -127,7 +127,7 @@ impl Request {
         let text = write::task(task, &notes);
         let written = TaskFile::parse(Source { file, text: joined(&text, &parts) })?;
         write_file(&beside, &parts)?;
-        // Parts without their task are of no use.
+        // If the task cannot be written, its parts file is removed.
         write_file(out, &text).inspect_err(|_| drop(std::fs::remove_file(&beside)))?;
         Ok(written)
     }

@@ -183,7 +183,7 @@ fn text(size: &Size) -> String {
     mm(&[size.width, size.height, size.length])
 }
 
-/// Returns lengths in the form of the options.
+/// Formats lengths, m, as the options expect them: `8.25x2.4x6.65`, mm.
 fn mm(lengths: &[f64]) -> String {
     let mm = |length: &f64| ((length / MM * 1e4).round() / 1e4).to_string();
     lengths.iter().map(mm).collect::<Vec<_>>().join("x")

@@ -210,7 +210,7 @@ fn rewritten(file: &TaskFile, tuned: &Tuned) -> Result<TaskFile, Failure> {
     TaskFile::parse(Source { file: source.file.clone(), text })
 }
 
-/// Returns a strategy with the windows of the fingers, measured when it was tried, as JSON.
+/// Returns a strategy with the windows of the fingers, simulated when it was tried, as JSON.
 fn strategy_json(strategy: &Strategy, tried: &Candidate, fingers: &[Finger]) -> Value {
     let result = |(finger, window): (&Finger, &Window)| {
         json!({
@@ -230,7 +230,7 @@ fn strategy_json(strategy: &Strategy, tried: &Candidate, fingers: &[Finger]) -> 
     })
 }
 
-/// Returns the speed of the last phase, mm/s.
+/// Returns the speed of the last phase, the push, mm/s.
 fn push_speed_mm_per_s(strategy: &Strategy) -> f64 {
     strategy.phases.last().map_or(0.0, |push| (push.speed / MM * 10.0).round() / 10.0)
 }
@@ -328,7 +328,7 @@ fn push_text(TunedTask { tuner, tuned, .. }: &TunedTask<'_>, after_n: f64) -> St
     format!("{old:.0} -> {new:.0} mm/s{limited}, largest force {before} -> {after_n:.0} N{limit}")
 }
 
-/// Returns a line for each stage with its best strategy; for the families stage one per family.
+/// Returns a line for each stage with its best strategy; for the stage of the connector families, one per family.
 fn steps(tuned: &Tuned) -> Vec<(String, String)> {
     let (searched, others): (Vec<&Step>, Vec<&Step>) =
         tuned.steps.iter().partition(|step| step.stage == Stage::Search);

@@ -1,4 +1,4 @@
-//! Contact engines behind one trait. They depend on scenes only, not on studies.
+//! Simulation of rigid bodies in contact: scenes, and interchangeable engines that simulate them.
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 #![deny(clippy::print_stdout, clippy::print_stderr)]
@@ -37,10 +37,10 @@ pub trait Engine: Send + Sync {
     /// Creates the simulation, at time zero, of a scene that the engine [supports](Engine::supports).
     fn world(&self, scene: &Scene) -> Box<dyn World>;
 
-    /// Returns the same engine with half the step, to repeat trials that diverged.
+    /// Returns the same engine with half the step, to repeat simulations that diverged.
     fn with_half_step(&self) -> Box<dyn Engine>;
 
-    /// Returns finer engines for convergence studies, each with its name.
+    /// Returns engines with finer settings for convergence checks, each with its name.
     fn finer(&self) -> Vec<(&'static str, Box<dyn Engine>)> {
         vec![("half the step", self.with_half_step())]
     }
@@ -57,7 +57,7 @@ pub enum Unsupported {
     Lacking {
         /// Name and version of the engine.
         engine: String,
-        /// Body or joint of the scene.
+        /// Name of the body or joint.
         part: String,
         /// Missing feature.
         feature: &'static str,
@@ -72,8 +72,8 @@ pub enum Unsupported {
     },
 }
 
-/// Returns the parts of a scene that only `direct` can simulate, each with the feature that the other engines lack:
-/// springs that couple axes, friction of a contact patch, mass that depends on the direction.
+/// Returns the first joint with coupled springs, the first body with a contact patch ([`scene::Torsion::Patch`]) and
+/// the first mechanism of a scene, each by its name and with the feature that only `direct` has.
 fn unsupported_parts(scene: &Scene) -> impl DoubleEndedIterator<Item = (&str, &'static str)> {
     let coupled = scene.joints.iter().find(|j| matches!(j.springs, Springs::Coupled { .. }));
     let pressed = scene.first_patch().map(|pair| &scene.bodies[pair.first.0]);
@@ -86,7 +86,7 @@ fn unsupported_parts(scene: &Scene) -> impl DoubleEndedIterator<Item = (&str, &'
     parts.into_iter().flatten()
 }
 
-/// Divergence: the state is no longer finite, and the trial has no result.
+/// Divergence: the state of the simulation is no longer finite.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("the simulation diverged: a body's state is no longer finite")]
 pub struct Diverged;
@@ -94,7 +94,7 @@ pub struct Diverged;
 /// Contact force between two bodies over the last step.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ContactForce {
-    /// Net force on the second body, with friction, N.
+    /// Net force on the second body, friction included, world axes, N.
     pub net: Vector3<f64>,
     /// Sum of the magnitudes of the normal forces of all contact points, N.
     pub normal_sum: f64,
@@ -103,14 +103,14 @@ pub struct ContactForce {
 /// Point at which two bodies press against each other.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContactPoint {
-    /// Position, m.
+    /// Position in the world, m.
     pub point: Point3<f64>,
-    /// Force on the second body over the last step, with friction, N.
+    /// Force on the second body over the last step, friction included, world axes, N.
     pub force: Vector3<f64>,
 }
 
 impl ContactPoint {
-    /// Returns the contact point in another frame, in which the pose of its present frame is `frame`.
+    /// Transforms the contact point to another frame; `frame` is the pose of the present frame in it.
     pub fn transformed(&self, frame: &Pose) -> Self {
         ContactPoint { point: frame * self.point, force: frame * self.force }
     }
@@ -130,7 +130,7 @@ pub trait World: Send + Sync {
     /// Sets the length of the following steps, s; engines with a fixed step ignore it.
     fn set_step(&mut self, _step_s: f64) {}
 
-    /// Returns the frame of a body in the world.
+    /// Returns the pose of a body in the world.
     fn pose(&self, body: BodyId) -> Pose;
 
     /// Commands the pose of a driven body at the end of the next step.
@@ -139,7 +139,8 @@ pub trait World: Send + Sync {
     /// Moves a fixed body, which must have no contacts before or after.
     fn place(&mut self, body: BodyId, pose: Pose);
 
-    /// Replaces the spring of an axis (0..6) of a joint; the axis must be a servo in the scene.
+    /// Replaces the spring of an axis of a joint (order of [`Springs::Axes`]); in the scene the axis must be a servo: a
+    /// spring with a limit.
     fn set_spring(&mut self, joint: JointId, axis: usize, spring: Spring);
 
     /// Sets the force at a free body's centre of mass, N, and the moment, N m, in world axes, that act

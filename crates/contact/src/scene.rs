@@ -3,7 +3,7 @@
 
 use nalgebra::{Isometry3, Matrix6, Point3, UnitQuaternion, Vector3, Vector6};
 
-/// Rigid pose, m.
+/// Pose of a frame: translation, m, and rotation.
 pub type Pose = Isometry3<f64>;
 
 /// Returns the translation and the rotation vector from one pose to another, world axes.
@@ -66,7 +66,7 @@ pub struct Geom {
     pub name: String,
     /// Shape in its own frame.
     pub shape: Shape,
-    /// Shape frame in the body frame.
+    /// Pose of the shape in the body frame.
     pub pose: Pose,
     /// Coefficient of friction that replaces that of the pair; if both geoms have one, the smaller applies.
     pub friction: Option<f64>,
@@ -175,8 +175,8 @@ pub enum Motion {
     Free(Inertia),
     /// Motion under forces except the weight, which the robot compensates.
     Carried(Inertia),
-    /// `Carried` end of a mechanism, whose mass depends on the direction: symmetric, positive
-    /// definite 6x6, about the body frame's origin, along the body axes: kg, kg m, kg m2.
+    /// End of a mechanism, without weight like `Carried`, with a mass that depends on the direction: symmetric,
+    /// positive definite 6x6, about the body frame's origin, along the body axes: kg, kg m, kg m2.
     Mechanism(Matrix6<f64>),
 }
 
@@ -187,7 +187,7 @@ pub struct Body {
     pub name: String,
     /// Motion of the body.
     pub motion: Motion,
-    /// Body frame in the world at the start.
+    /// Pose in the world at the start.
     pub pose: Pose,
     /// Shapes of the body.
     pub geoms: Vec<Geom>,
@@ -237,9 +237,9 @@ pub struct Joint {
     pub parent: BodyId,
     /// Body that moves along them.
     pub child: BodyId,
-    /// Joint frame in the parent frame.
+    /// Pose of the joint frame in the parent frame.
     pub in_parent: Pose,
-    /// Joint frame in the child frame.
+    /// Pose of the joint frame in the child frame.
     pub in_child: Pose,
     /// Springs against relative motion.
     pub springs: Springs,

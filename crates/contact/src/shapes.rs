@@ -1,5 +1,5 @@
-//! Conversion of shapes and poses to parry, which rapier uses, in a unit of length of the caller's choice
-//! (`scale` units make a metre), and triangles of shapes for pictures and exports.
+//! Conversion of shapes and poses to parry, rapier's collision library, and triangles of shapes for pictures and
+//! exports. The caller chooses parry's unit of length: `scale` is the number of units in a metre.
 
 use crate::scene::{Pose, Shape};
 use nalgebra::{Point3, Translation3, UnitQuaternion, Vector3};
@@ -21,8 +21,8 @@ pub fn hull(points: &[Point3<f64>]) -> Option<Triangles> {
     Some((points.into_iter().map(|p| Point3::from(Vector3::from(p) * MM)).collect(), triangles))
 }
 
-/// Returns the surface of a convex shape in its frame (of a cylinder that of the prism inside it). Empty for a hull
-/// without volume, which no checked file has.
+/// Returns the surface of a convex shape in its frame: the hull of [`Shape::corners`], which approximate round
+/// surfaces. Empty for a hull without volume, which the checks of a task file reject.
 pub fn surface(shape: &Shape) -> Triangles {
     hull(&shape.corners()).unwrap_or_default()
 }
@@ -40,7 +40,7 @@ pub fn shared(shape: &Shape, scale: f64) -> (SharedShape, Pose) {
         }
         Shape::Hull { points } => {
             let points: Vec<_> = points.iter().map(|p| (p.coords * scale).into()).collect();
-            // A ball of radius 0 instead of a degenerate hull, which the checks of a task file reject.
+            // The checks of a task file reject a degenerate hull; here it becomes a ball of radius 0.
             SharedShape::convex_hull(&points).unwrap_or_else(|| SharedShape::ball(0.0))
         }
         Shape::RoundBox { core, radius } => {
@@ -65,7 +65,7 @@ pub(super) fn extended(core: &Vector3<f64>) -> Vec<usize> {
 
 /// Returns the centre and half extents, m, of the box in the shape's frame that encloses it.
 pub(super) fn bounds(shape: &Shape) -> (Vector3<f64>, Vector3<f64>) {
-    // A cylinder's prism has corners on both axes.
+    // The prism of a cylinder has corners on x and y, so the box encloses the cylinder, too.
     let corners = shape.corners();
     let infinite = Vector3::repeat(f64::INFINITY);
     let low = corners.iter().fold(infinite, |low, p| low.inf(&p.coords));
@@ -82,7 +82,7 @@ pub fn pose(pose: &Pose, scale: f64) -> pm::Pose {
 mod tests {
     use super::*;
 
-    /// Six times the volume is the sum of the triangles' triple products, if all face outward.
+    /// Returns the volume: a sixth of the sum of the triangles' triple products, if all face outward.
     fn volume((points, triangles): &Triangles) -> f64 {
         let of = |t: &[u32; 3]| {
             let [a, b, c] = t.map(|i| points[i as usize].coords);

@@ -38,7 +38,7 @@ fn scene(ground: usize, block: usize, torsion: Torsion) -> Scene {
     let square = Vector3::from(BLOCK).map(|side| side * side);
     let moments = (Vector3::repeat(square.sum()) - square) * (MASS / 12.0);
     let motion = Motion::Free(Inertia { mass: MASS, centre: Point3::origin(), moments });
-    // Its edges beside those of the ground's parts.
+    // Shifted, so that its edges do not coincide with those of the ground's parts.
     let pose = Pose::translation(0.7 * MM, 0.4 * MM, BLOCK[2] / 2.0);
     let name = "block".into();
     let block = scene.body(Body { name, motion, pose, geoms: facets(BLOCK, block) });
@@ -69,7 +69,7 @@ fn behaviour(engine: &dyn Engine, ground: usize, block: usize, torsion: Torsion)
     let mut tilted = world.snapshot();
     let moment = Vector3::new(BLOCK[1] / 6.0, BLOCK[0] / 6.0, 0.0) * PRESSED / 2.0;
     let tilt = moved(tilted.as_mut(), zero, moment, 0.05);
-    // At the height of the friction, lest it tilts.
+    // The couple moves the force to the height of the friction, so that the block does not tilt.
     let push = 1.2 * FRICTION * PRESSED;
     let mut slid = world.snapshot();
     let couple = Vector3::new(0.0, -push * BLOCK[2] / 2.0, 0.0);
@@ -85,7 +85,7 @@ fn a_block_on_facets_moves_as_on_a_whole_face() {
     for torsion in [Torsion::Radius(0.0), Torsion::Radius(2.0 * MM), Torsion::Patch] {
         let [whole, others @ ..] =
             CASES.map(|(ground, block)| behaviour(&Direct::default(), ground, block, torsion));
-        // Four corners bear it.
+        // Four corners bear the load.
         let stiffness = 4.0 * Direct::default().contact_stiffness;
         assert!((whole[0] / (-PRESSED / stiffness) - 1.0).abs() < 1e-3, "{whole:?}");
         for (case, other) in CASES[1..].iter().zip(others) {

@@ -14,15 +14,16 @@ use crate::outline::Outline;
 use nalgebra::{DMatrix, DVector, Point2};
 use std::ops::Range;
 
-/// Elasticity of the triangles of a mesh.
+/// Finite element with six nodes: elasticity of the triangles of a mesh.
 pub trait Element {
     /// Number of degrees of freedom of a node.
     const DOFS: usize;
     /// Returns the stiffness matrix of a triangle, square, row by row, by the degrees of freedom of its six nodes; only
     /// the lower half is used.
     fn stiffness(&self, corners: [Point2<f64>; 3]) -> Vec<f64>;
-    /// Returns the displacements of a node per unit of the three motions of a rigid pad, a row for each degree of
-    /// freedom; `place` is the position of the node along y and z, from the middle of the pad, m.
+    /// Returns the displacements of a node per unit of the three motions of a rigid pad about its middle (y, z, rx in
+    /// the plane; x, ry, rz out of it), a row for each degree of freedom; `place` is the node's position along y and z
+    /// from the middle of the pad, m.
     fn rigid_displacements(&self, outline: &Outline, place: [f64; 2]) -> Vec<[f64; 3]>;
 }
 
@@ -33,7 +34,7 @@ pub enum Role {
     Free,
     /// Clamped: it does not move.
     Fixed,
-    /// Kept: the mesh is condensed onto it.
+    /// Kept (a master node): the mesh is condensed onto it.
     Kept,
 }
 
@@ -42,10 +43,12 @@ pub enum Role {
 pub struct Condensed {
     /// Kept nodes, in the order of the matrix.
     pub nodes: Vec<u32>,
-    /// Symmetric, square: `DOFS` rows for each kept node.
+    /// Symmetric, square, SI units: `DOFS` rows for each kept node.
     pub stiffness: DMatrix<f64>,
     dofs: usize,
+    /// Number of nodes of the mesh.
     count: usize,
+    /// Eliminated frontal matrices, in their order; empty unless `remember` was set.
     steps: Vec<Frontal>,
 }
 
@@ -100,9 +103,10 @@ impl Condensed {
 struct Condensation<'a, E> {
     mesh: &'a Mesh,
     element: &'a E,
+    /// Order and cuts of [`halve`].
     order: Vec<u32>,
     cuts: std::vec::IntoIter<usize>,
-    /// First and last place in `order` of the triangles of a node.
+    /// First and last index in `order` of the triangles of each node.
     spans: Vec<[u32; 2]>,
     roles: &'a [Role],
     /// Scratch: index of each node in the current frontal matrix.
@@ -111,8 +115,8 @@ struct Condensation<'a, E> {
 }
 
 impl<E: Element> Condensation<'_, E> {
-    /// Returns the stiffness of the triangles at these places of the order, condensed onto the nodes they share with
-    /// others.
+    /// Returns the stiffness of the triangles in this range of `order`, condensed onto their kept nodes and those they
+    /// share with other triangles.
     fn condense(&mut self, range: Range<usize>) -> Result<Frontal, MeshError> {
         let cut = if range.len() > LEAF { self.cuts.next() } else { None };
         let parts: Vec<(Vec<u32>, Vec<f64>)> = match cut.map(|cut| range.start + cut) {
@@ -161,7 +165,7 @@ impl<E: Element> Condensation<'_, E> {
     }
 }
 
-/// Returns the first and last place in the order of the triangles of each node.
+/// Returns the first and last index in the order of the triangles of each node.
 fn spans(mesh: &Mesh, order: &[u32]) -> Vec<[u32; 2]> {
     let mut spans = vec![[u32::MAX, 0]; mesh.nodes.len()];
     for (place, &t) in order.iter().enumerate() {

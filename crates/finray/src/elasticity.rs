@@ -12,7 +12,7 @@ pub struct Slab {
     pub modulus: f64,
     /// Poisson's ratio.
     pub poisson: f64,
-    /// Thickness across the profile's plane, m.
+    /// Thickness perpendicular to the profile's plane, m.
     pub thickness: f64,
 }
 
@@ -37,7 +37,7 @@ pub struct Shape {
     pub gradients: [[f64; 2]; 6],
 }
 
-/// Area coordinates of three integration points of equal weight, exact for quadratic functions.
+/// Area coordinates of three quadrature points of equal weight, exact for quadratic functions.
 const POINTS: [[f64; 3]; 3] = {
     const A: f64 = 2.0 / 3.0;
     const B: f64 = 1.0 / 6.0;
@@ -81,7 +81,7 @@ pub fn shape([a, b, c]: [Point2<f64>; 3], [l, m, n]: [f64; 3]) -> Shape {
 }
 
 impl Element for PlaneStress {
-    /// Displacements along X and Y.
+    /// Displacements along X and Y, m.
     const DOFS: usize = 2;
 
     fn stiffness(&self, corners: [Point2<f64>; 3]) -> Vec<f64> {

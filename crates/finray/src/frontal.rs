@@ -1,11 +1,12 @@
-//! Frontal matrix: dense symmetric stiffness matrix of some nodes, the first of which are eliminated.
+//! Frontal matrix of the multifrontal method (`condense.rs`): dense symmetric stiffness matrix of some nodes, the first
+//! of which are eliminated.
 
 use super::mesh::MeshError;
 
 /// Number of columns that are eliminated together.
 const PANEL: usize = 4;
-/// Smallest pivot, as a share of its value before the elimination; below it the pivot is a rounding error, and
-/// the node is not supported.
+/// Smallest pivot, relative to its value before the elimination; a smaller one is a rounding error, and the node can
+/// move without a force.
 const SMALLEST_PIVOT: f64 = 1e-11;
 
 /// Stiffness matrix of some nodes of a part of a mesh.
@@ -13,14 +14,16 @@ const SMALLEST_PIVOT: f64 = 1e-11;
 pub struct Frontal {
     /// Nodes of the mesh, those to eliminate first.
     pub nodes: Vec<u32>,
+    /// Number of nodes to eliminate.
     eliminated: usize,
+    /// Number of degrees of freedom of a node.
     dofs: usize,
-    /// Square, row by row; only the lower triangle is used.
+    /// Square matrix, row by row; only the lower triangle is used.
     pub values: Vec<f64>,
 }
 
 impl Frontal {
-    /// Creates a zero matrix of these nodes.
+    /// Creates a zero matrix of these nodes, of which the first `eliminated` are to be eliminated.
     pub fn new(nodes: Vec<u32>, eliminated: usize, dofs: usize) -> Self {
         let size = nodes.len() * dofs;
         Frontal { nodes, eliminated, dofs, values: vec![0.0; size * size] }
@@ -36,8 +39,8 @@ impl Frontal {
         self.values[row * self.size() + column]
     }
 
-    /// Adds the lower half of a square matrix. `places` are the places of its nodes in this matrix, `None` for a
-    /// fixed node.
+    /// Adds the lower half of a square matrix; `places` are the indices of its nodes in [`Frontal::nodes`], `None` for
+    /// a fixed node.
     pub fn add(&mut self, places: &[Option<usize>], lower: &[f64]) {
         let (size, f) = (self.size(), self.dofs);
         let width = places.len() * f;
@@ -59,7 +62,7 @@ impl Frontal {
     /// Eliminates the first nodes by a partial Cholesky factorization, which condenses the matrix onto the others.
     ///
     /// # Errors
-    /// If one of the first nodes is not supported.
+    /// If one of the first nodes can move without a force.
     pub fn eliminate(&mut self) -> Result<(), MeshError> {
         let (size, end) = (self.size(), self.eliminated * self.dofs);
         let least: Vec<f64> = (0..end).map(|i| SMALLEST_PIVOT * self.at(i, i)).collect();
@@ -136,7 +139,7 @@ impl Frontal {
         }
     }
 
-    /// Returns the condensed matrix of the remaining nodes.
+    /// Returns the matrix condensed onto the remaining nodes (the Schur complement).
     pub fn rest(&self) -> Frontal {
         let mut rest = Frontal::new(self.nodes[self.eliminated..].to_vec(), 0, self.dofs);
         let (size, small) = (self.size(), rest.size());
@@ -148,7 +151,8 @@ impl Frontal {
         rest
     }
 
-    /// Computes the displacements of the eliminated nodes from those of the others.
+    /// Computes the displacements of the eliminated nodes from those of the others, in place; the slice contains all
+    /// nodes of the mesh, with `dofs` values each.
     pub fn substitute(&self, displacements: &mut [f64]) {
         let f = self.dofs;
         let place = |i: usize| self.nodes[i / f] as usize * f + i % f;

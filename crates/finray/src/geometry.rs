@@ -1,4 +1,4 @@
-//! The solid profile of a printed finger: outline, skin and ribs, checked.
+//! The checked profile of a printed finger: outline, skin and ribs.
 
 use super::FingerError;
 use super::infill::{InfillDesign, NARROWEST_VOID, RibLines};
@@ -9,10 +9,10 @@ use crate::printed::PrintedFinger;
 use input::units::{MM, PERCENT};
 use input::{Check, InputError};
 
-/// Checked profile of a finger, SI units: X from the tip to the base, Y across, 0 on the front side.
+/// Checked profile of a finger, SI units, in the axes of [`Outline`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Geometry {
-    /// Finger file, with the numbers that the design sets in it.
+    /// Finger, with the values of its file that the design sets.
     pub finger: PrintedFinger,
     /// Infill of the finger.
     pub design: InfillDesign,
@@ -22,7 +22,7 @@ pub struct Geometry {
     pub outer: Ring,
     /// Openings between the ribs, clockwise, m.
     pub voids: Vec<Ring>,
-    /// Number of ribs with an opening on either side.
+    /// Number of ribs with openings on both sides.
     pub ribs: usize,
 }
 
@@ -61,7 +61,7 @@ impl Geometry {
         std::iter::once(&self.outer).chain(&self.voids).cloned().chain(self.holes())
     }
 
-    /// Returns the holes through the held base, clockwise, m; the mechanical model ignores them.
+    /// Returns the holes through the clamped base, clockwise, m; the mechanical model ignores them.
     pub fn holes(&self) -> Vec<Ring> {
         let holes = self.finger.holes.as_ref().filter(|holes| holes.block.is_none());
         holes.map_or_else(Vec::new, |holes| holes.rings(&self.finger.outline))
@@ -72,7 +72,7 @@ impl Geometry {
         self.rings().map(|ring| polygon::area(&ring)).sum()
     }
 
-    /// Returns the holes and their block, if they do not run through the held base.
+    /// Returns the holes and their block, if they are in a block.
     pub fn block(&self) -> Option<(&Holes, Block)> {
         self.finger.holes.as_ref().and_then(|holes| Some((holes, holes.block?)))
     }
@@ -176,7 +176,7 @@ fn check_ribs(check: Check<'_>, finger: &PrintedFinger, design: &InfillDesign) -
     check.fail(key, problem)
 }
 
-/// Checks that outline and inside are simple rings.
+/// Checks that outline and inside (the outline less skin and base) are simple rings.
 fn check_rings(check: Check<'_>, finger: &PrintedFinger, outer: &Ring, inside: &Ring) -> Checked {
     if polygon::crosses_itself(outer) || polygon::area(outer) <= 0.0 {
         let problem = "its sides cross one another; check outline.length_mm, \

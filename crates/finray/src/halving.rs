@@ -50,7 +50,7 @@ struct Halving {
 
 /// Directions along which a set of triangles may be halved.
 const DIRECTIONS: [[f64; 2]; 4] = [[1.0, 0.0], [0.0, 1.0], [0.7, 0.7], [0.7, -0.7]];
-/// Shares of the triangles that may lie before a cut.
+/// Fractions of the triangles that may lie before a cut.
 const SHARES: [f64; 3] = [0.5, 0.4, 0.6];
 /// Number of triangles below which only the cut into halves along x or y is tried.
 const FEW: usize = 30;

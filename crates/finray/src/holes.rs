@@ -1,5 +1,5 @@
-//! Screw holes of a finger, through the depth of its base or in a block beyond its end. The gripper holds this
-//! part rigidly: the mechanical model ignores it.
+//! Screw holes of a finger, through the depth of its base or in a block beyond its end. The gripper clamps base and
+//! block rigidly, so the mechanical model ignores the holes.
 
 use super::polygon::Ring;
 use crate::outline::Outline;
@@ -10,7 +10,7 @@ use nalgebra::Point2;
 use serde::Deserialize;
 use std::f64::consts::{PI, TAU};
 
-/// Axis of a finger; as a number, the index of its coordinate.
+/// Axis of the finger's frame; as a number, the index of its coordinate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Direction {
@@ -30,7 +30,7 @@ impl Direction {
         [1, 2].map(|next| Self::ALL[(self as usize + next) % 3])
     }
 
-    /// Returns its name in finger files.
+    /// Returns the name of the direction in finger files.
     pub fn word(self) -> &'static str {
         ["length", "width", "depth"][self as usize]
     }
@@ -39,9 +39,9 @@ impl Direction {
 /// Row of equal holes, m.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Holes {
-    /// Direction along which the holes run.
+    /// Direction of the holes' centre lines.
     pub axis: Direction,
-    /// Direction of their row.
+    /// Direction in which the holes follow one another.
     pub row: Direction,
     /// Number of holes.
     pub count: u32,
@@ -51,24 +51,24 @@ pub struct Holes {
     pub diameter: f64,
     /// Offset of the middle of the row from the middle of the base or block, along the row and across it.
     pub offset: [f64; 2],
-    /// Block that contains the holes; if `None`, they are in the held base.
+    /// Block that contains the holes; if `None`, they are in the clamped base.
     pub block: Option<Block>,
 }
 
-/// Block beyond the end of a finger, as deep as it and in the middle of its width, m.
+/// Block beyond the end of a finger, of the same depth and in the middle of its width, m.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Block {
     /// Length beyond the end.
     pub length: f64,
     /// Width.
     pub width: f64,
-    /// Length of the part inside the finger, so that a slicer merges both.
+    /// Additional length inside the finger, so that a slicer merges both.
     pub overlap: f64,
 }
 
-/// Largest distance of a printed hole's flats from its circle, m.
+/// Largest distance between the polygon of a hole and its circle, m.
 const FLAT: f64 = 0.01 * MM;
-/// Smallest wall beside a hole, printed lines.
+/// Thickness of the thinnest wall beside a hole, in widths of a printed line.
 const WALL_LINES: f64 = 3.0;
 /// Smallest diameter that prints open, m.
 const SMALLEST: f64 = 1.0 * MM;
@@ -78,8 +78,8 @@ const MOST: u32 = 20;
 const EPSILON: f64 = 1e-9;
 
 impl Holes {
-    /// Returns the low and high end along each direction of the base or block that contains the holes, m: X from the
-    /// tip, Y from the front, Z from the first layer.
+    /// Returns the low and high end along X, Y and Z of the base or block that contains the holes, m: X is 0 at the
+    /// tip, Y on the front side (negative inside the finger), Z below the first layer.
     pub fn carrier(&self, outline: &Outline) -> [[f64; 2]; 3] {
         let Outline { length, width, depth, clamped, .. } = *outline;
         let (x, half, middle) = match self.block {
@@ -102,7 +102,7 @@ impl Holes {
         (0..self.count).map(centre).collect()
     }
 
-    /// Returns the low and high end of each hole along each direction, m.
+    /// Returns the low and high end of each hole along X, Y and Z, m.
     pub fn boxes(&self, outline: &Outline) -> Vec<[[f64; 2]; 3]> {
         let radius = self.diameter / 2.0;
         let boxed = |middle: [f64; 3]| {
@@ -113,7 +113,7 @@ impl Holes {
         self.centres(outline).into_iter().map(boxed).collect()
     }
 
-    /// Returns the holes, clockwise in the plane of [`Direction::across`], m.
+    /// Returns the holes as polygons, clockwise in the plane of [`Direction::across`], m.
     pub fn rings(&self, outline: &Outline) -> Vec<Ring> {
         let radius = self.diameter / 2.0;
         let [u, v] = self.axis.across().map(|direction| direction as usize);
@@ -129,7 +129,7 @@ impl Holes {
         self.centres(outline).into_iter().map(ring).collect()
     }
 
-    /// Returns the index of the coordinate perpendicular to holes and row.
+    /// Returns the index of the direction perpendicular to the holes and to their row.
     fn beside(&self) -> usize {
         3 - self.axis as usize - self.row as usize
     }
@@ -210,7 +210,7 @@ struct RawBlock {
 }
 
 impl RawHoles {
-    /// Checks each number by itself.
+    /// Checks each value by itself; [`Holes::check`] checks whether they fit together.
     pub fn checked(self, check: Check<'_>) -> Result<Holes, InputError> {
         let length = |key, value| length(check, key, value);
         let RawHoles { axis, row, count, .. } = self;

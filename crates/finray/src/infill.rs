@@ -9,7 +9,7 @@ use nalgebra::{Point2, Vector2};
 pub struct InfillDesign {
     /// Infill density, percent.
     pub density_percent: f64,
-    /// Infill direction, degrees.
+    /// Infill direction, degrees: 0 straight across the finger; positive tilts the ribs' front ends towards the base.
     pub direction_deg: f64,
     /// Phase of the first rib, mm; if not given, the phase in the finger file.
     pub phase_mm: Option<f64>,

@@ -1,8 +1,12 @@
-//! Printed finger: profile, stiffness computed from its ribs, picture, files for printers.
+//! Printed finger: profile, stiffness computed from its ribs, picture, files for 3D printing.
+//!
+//! A notch near the tip holds the gripped part: its *pad*, from tip to corner, presses on the part's side, and its
+//! *roof*, perpendicular to the pad, rests on the part. The *base*, at the other end, has no ribs; the gripper clamps a
+//! part of it.
 //!
 //! ```text
 //! outline, holes -> printed -> infill -> geometry (polygon) -> mesh -> meshed -> condense (halving, frontal)
-//!     elements: elasticity (in the plane), plate (across it) -> stiffness, mechanics, picture
+//!     elements: elasticity (in the plane), plate (out of it) -> stiffness, mechanics, picture
 //! ```
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]

@@ -1,8 +1,8 @@
 //! Stiffness of a printed finger from its ribs.
 //!
-//! The profile is in plane stress under loads in its plane, and a Mindlin plate under loads across the
-//! plane. Both models use quadratic triangles on the exact profile. The base is clamped, and the
-//! pad (or the pad and a part of the roof) moves as a rigid body.
+//! The profile is in plane stress under loads in its plane, and a Mindlin plate under loads out of the plane. Both
+//! models use quadratic triangles on the exact profile. The base is clamped, and the pad (or the pad and a section of
+//! the roof) moves as a rigid body.
 
 use super::FingerError;
 use super::elasticity::{PlaneStress, Slab};
@@ -21,10 +21,9 @@ use std::sync::Mutex;
 /// Side length of the triangles, m: halving it changes no entry of a stiffness matrix by
 /// more than 2 % of the springs it couples.
 pub const SIZE: f64 = 0.4 * MM;
-/// Side length of the triangles for loads across the plane, m: the walls act as deep beams and need fewer
-/// triangles.
+/// Side length of the triangles for loads out of the plane, m: the walls act as deep beams and need fewer triangles.
 pub const CROSS_SIZE: f64 = 1.2 * MM;
-/// Compliance stiffness of a finger for a hand-sized gripper, N/mm.
+/// Accepted compliance stiffness (along y, with z and rx free), N/mm: that of fingers for a hand-sized gripper.
 const PLAUSIBLE: std::ops::RangeInclusive<f64> = 0.05..=100.0;
 /// Number of evaluated phases, evenly spaced over one pitch, starting at that of the finger file.
 const PHASES: usize = 8;
@@ -36,7 +35,7 @@ pub struct FingerStiffness {
     pub pad: PlanarStiffness,
     /// In the plane, with the part touching pad and roof.
     pub pad_and_roof: PlanarStiffness,
-    /// Across the plane, with the part touching the pad.
+    /// Out of the plane, with the part touching the pad.
     pub cross: CrossStiffness,
 }
 
@@ -74,7 +73,7 @@ pub fn planar(geometry: &Geometry) -> Result<[PlanarStiffness; 2], FingerError> 
     Ok([pad, stiffness(held[1])?])
 }
 
-/// Returns the stiffness across the plane.
+/// Returns the stiffness out of the plane.
 ///
 /// # Errors
 /// If the profile cannot be meshed or is not connected to its base.
@@ -109,7 +108,7 @@ pub fn over_phases(
     found.into_iter().collect()
 }
 
-/// Cache of computed stiffness. Equal fingers give equal bits, so the cache changes no result.
+/// Cache of computed stiffness. The computation is deterministic, so the cache changes no result.
 #[derive(Debug, Default)]
 pub struct StiffnessCache(Mutex<BTreeMap<String, FingerStiffness>>);
 

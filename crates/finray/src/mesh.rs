@@ -10,9 +10,9 @@ use std::collections::BTreeSet;
 
 /// Smallest angle of a triangle, degrees; above 30 the refinement may not terminate.
 const SMALLEST_ANGLE_DEG: f64 = 25.0;
-/// Largest number of nodes; a profile that can be printed needs fewer.
+/// Largest number of vertices that the refinement adds; a printable profile needs fewer.
 const MAX_VERTICES: usize = 100_000;
-/// Share of the requested area below which a triangle is not divided to improve its angles.
+/// Fraction of the requested area below which a triangle is not divided to improve its angles.
 const SMALLEST_SHARE: f64 = 1e-3;
 
 /// Straight-sided triangles with nodes at their corners and mid-sides.
@@ -24,13 +24,13 @@ pub struct Mesh {
     pub triangles: Vec<[u32; 6]>,
 }
 
-/// Reason why a profile has no mesh, or its mesh no stiffness.
+/// Reason why a profile has no mesh, or its mesh no stiffness matrix; messages complete "cannot be meshed: ".
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum MeshError {
     /// Rings that cross or touch.
     #[error("its edges cross or touch one another")]
     Crossing,
-    /// Details much smaller than the triangles.
+    /// Walls or gaps that need too many triangles.
     #[error("its mesh needs more than {MAX_VERTICES} vertices: a wall or gap is too thin")]
     TooFine,
     /// Nodes that are not connected to the base.
@@ -45,8 +45,9 @@ impl Mesh {
     /// Meshes an outer ring minus its holes, with triangle sides of about `size`, m.
     ///
     /// # Errors
-    /// If rings cross, or details are so small that the mesh would be too large.
+    /// If rings cross, or walls or gaps are so thin that the mesh would be too large.
     pub fn new(outer: &Ring, holes: &[Ring], size: f64) -> Result<Mesh, MeshError> {
+        // Equilateral triangle.
         let area = 0.433 * size * size;
         let parameters = RefinementParameters::new()
             .with_angle_limit(AngleLimit::from_deg(SMALLEST_ANGLE_DEG))
@@ -56,7 +57,7 @@ impl Mesh {
         Mesh::fill(outer, holes, parameters)
     }
 
-    /// Meshes an outer ring minus its holes, with triangles whose corners are those of the rings.
+    /// Meshes an outer ring minus its holes without additional vertices.
     ///
     /// # Errors
     /// If rings cross.
@@ -102,8 +103,8 @@ impl Mesh {
         })))
     }
 
-    /// Creates a mesh from triangles. Each corner is given by its number, the number of the side to the next corner,
-    /// and its position.
+    /// Creates a mesh from triangles. Each corner is given by its number, the number of the side to the next corner
+    /// (sides are numbered after all corners), and its position.
     fn quadratic(faces: impl Iterator<Item = [(usize, usize, Point2<f64>); 3]>) -> Mesh {
         let mut mesh = Mesh { nodes: Vec::new(), triangles: Vec::new() };
         let mut known: Vec<Option<u32>> = Vec::new();
@@ -133,7 +134,7 @@ impl Mesh {
         [a, b, c].map(|node| self.nodes[node as usize])
     }
 
-    /// Returns the nodes on the boundary of the solid and of each opening, in order.
+    /// Returns the nodes along the boundary, as one ring for the outline and one for each opening.
     pub fn boundary(&self) -> Vec<Vec<usize>> {
         let sides = || {
             let of = |&[a, b, c, ab, bc, ca]: &[u32; 6]| [(a, ab, b), (b, bc, c), (c, ca, a)];

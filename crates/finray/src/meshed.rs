@@ -1,4 +1,4 @@
-//! Finite-element model of a finger: mesh, clamped nodes, pad as a rigid face.
+//! Finite-element model of a finger: mesh, clamped nodes, and the pad, or pad and roof, as a rigid face.
 
 use super::condense::{Condensed, Element, Role, condense};
 use super::geometry::Geometry;
@@ -10,14 +10,14 @@ use nalgebra::{DMatrix, Matrix3, Point2};
 
 /// Distance from a line within which a node counts as on it, m.
 const ON_LINE: f64 = 1e-6 * MM;
-/// Size of the triangles at the ends of the rigid part, where stress is singular, as a share of the usual size.
+/// Size of the triangles at the ends of a rigid face, where stress is singular, relative to the usual size.
 const FINEST: f64 = 0.3;
 
 /// Mesh of a finger without its clamped part, which does not deform.
 pub struct MeshedFinger {
     /// Triangles and their nodes.
     pub mesh: Mesh,
-    /// Roles of the nodes; those of pad and roof are kept.
+    /// Roles of the nodes in the condensation; those of pad and roof are [`Role::Kept`].
     pub roles: Vec<Role>,
     outline: Outline,
 }
@@ -27,7 +27,7 @@ pub struct MeshedFinger {
 pub enum RigidFace {
     /// The pad alone.
     Pad,
-    /// The pad and the section of the roof that rests on the part.
+    /// The pad and the section of the roof that rests on the gripped part.
     PadAndRoof,
 }
 
@@ -53,7 +53,7 @@ impl MeshedFinger {
         Ok(meshed)
     }
 
-    /// Returns the coordinates y and z of a point, from the middle of the pad, m.
+    /// Returns the coordinates y (out of the pad) and z (along it) of a point, from the middle of the pad, m.
     pub fn local(&self, point: &Point2<f64>) -> [f64; 2] {
         let from_middle = point - self.outline.pad_middle();
         [self.outline.out_of_pad(), self.outline.along_pad()].map(|axis| axis.dot(&from_middle))
@@ -67,7 +67,7 @@ impl MeshedFinger {
         on_pad || (face == RigidFace::PadAndRoof && on_roof)
     }
 
-    /// Returns the stiffness and motion of a face that is rigid, with the other kept nodes free.
+    /// Returns the stiffness of a rigid face and the displacements due to its motions, with the other kept nodes free.
     ///
     /// # Errors
     /// If a part of the finger is not connected to its base.
@@ -113,8 +113,8 @@ impl MeshedFinger {
     }
 }
 
-/// Returns the stiffness matrices (forces and moments per motion) of faces, each of them rigid, on a mesh with
-/// triangles with sides of about `size`, m.
+/// Returns the stiffness matrix ([`RigidMotion::stiffness`]) of each face if it is rigid, on a mesh of triangles with
+/// sides of about `size`, m.
 ///
 /// # Errors
 /// If the profile cannot be meshed, or a part of it is not connected to its base.
@@ -133,15 +133,15 @@ pub fn rigid_stiffness<E: Element, const N: usize>(
     Ok(found)
 }
 
-/// Stiffness and motion of a rigid face.
+/// Stiffness of a rigid face, and displacements due to its motions.
 pub struct RigidMotion {
-    /// Forces and moments on the face per unit of its motions.
+    /// Forces and moments on the face per unit of its motions ([`Element::rigid_displacements`]): N/m, N/rad, N m/rad.
     pub stiffness: Matrix3<f64>,
     /// Displacements of the kept nodes per unit of the face's motions.
     pub displacements: DMatrix<f64>,
 }
 
-/// Returns a ring whose edges are finely divided near the given corners.
+/// Divides the edges of a ring finely near the given corners.
 fn graded(ring: &Ring, corners: &[Point2<f64>], size: f64) -> Ring {
     let near = |p: Point2<f64>| corners.iter().any(|corner| (p - corner).norm() < ON_LINE);
     let steps = |length: f64| -> Vec<f64> {

@@ -7,7 +7,8 @@ use nalgebra::{Point2, Vector2};
 /// Largest distance of the arc of the back from its chords, m.
 const SAGITTA: f64 = 0.001 * MM;
 
-/// Outline of a finger, m; X along it from the tip, Y across it from its front side.
+/// Outline of a finger, m; X is 0 at the tip and increases towards the base, Y is 0 on the front side and negative
+/// inside.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Outline {
     /// Length from tip to end.
@@ -24,11 +25,11 @@ pub struct Outline {
     pub pad: f64,
     /// Angle between pad and axis, rad.
     pub pad_angle: f64,
-    /// Length of the roof that rests on a part.
+    /// Length of the section of the roof, from the corner, that rests on the gripped part.
     pub roof: f64,
-    /// Length of the base without ribs.
+    /// Length of the base, which is solid.
     pub solid: f64,
-    /// Length of the base that the gripper holds.
+    /// Length of the part of the base that the gripper clamps.
     pub clamped: f64,
 }
 
@@ -59,7 +60,7 @@ impl Outline {
         self.tip_point() + self.along_pad() * (self.pad / 2.0)
     }
 
-    /// Returns the length of the roof, from the corner to the front side, m.
+    /// Returns the length of the whole roof, from the corner to the front side, m.
     pub fn roof_length(&self) -> f64 {
         -self.corner().y / self.out_of_pad().y
     }
@@ -69,7 +70,8 @@ impl Outline {
         self.arc_centre().unwrap_or_default().x
     }
 
-    /// Returns the centre of the arc, m, if the radius reaches from the tip to the back.
+    /// Returns the centre of the arc, m, which passes through the tip and is tangent to the back; `None` if the radius
+    /// is too small.
     pub(super) fn arc_centre(&self) -> Option<Point2<f64>> {
         let rise = self.width - self.tip;
         let square = rise * (2.0 * self.back_radius - rise);

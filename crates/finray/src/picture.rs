@@ -22,8 +22,8 @@ const LONGEST: f64 = 5.0;
 /// Length of the scale bar, mm.
 const BAR: f64 = 10.0;
 
-/// Draws the finger at rest (light) and under a force on its pad, y and z in N (dark), as a
-/// stand-alone SVG. The part touches only the pad and does not prevent its rotation.
+/// Draws the finger at rest (light) and under a force on its pad (dark), y and z components in N, as a stand-alone SVG.
+/// The gripped part touches only the pad and does not prevent its rotation.
 ///
 /// # Errors
 /// If the finger's stiffness cannot be computed.
@@ -59,8 +59,9 @@ pub fn svg(geometry: &Geometry, force: [f64; 2]) -> Result<String, FingerError> 
 /// Finger under load.
 struct BentFinger {
     meshed: MeshedFinger,
-    /// Displacements of each node along x and y, m.
+    /// Displacements along X and Y, m, two for each node.
     displacements: Vec<f64>,
+    /// Factor of the displacements in the picture.
     exaggeration: f64,
     /// Motion of the pad along y and z and about x, m and rad.
     motion: Vector3<f64>,

@@ -2,7 +2,8 @@
 
 use nalgebra::{Point2, Vector2};
 
-/// Closed polygon by its corners, the first not repeated at the end; its inside is on the left.
+/// Closed polygon by its corners, the first not repeated at the end. Solid material is on the left: holes are
+/// clockwise.
 pub type Ring = Vec<Point2<f64>>;
 
 /// Returns the edges of a ring, each by its two ends.
@@ -76,11 +77,11 @@ impl HalfPlane {
         a + (b - a) * (at_a / (at_a - at_b))
     }
 
-    /// Joins chains into closed rings. Each chain runs from the point where the ring enters the half plane to
-    /// the point where it leaves; sorted along the boundary, these points bound the inside in pairs.
+    /// Joins chains into closed rings. Each chain runs from the point where the ring enters the half plane to the point
+    /// where it leaves. Sorted along the boundary, these points are pairwise the ends of edges of the new rings.
     fn close(&self, chains: Vec<Ring>) -> Vec<Ring> {
         let along = Vector2::new(-self.normal.y, self.normal.x);
-        // (place along the boundary, chain, whether it is the end of the chain)
+        // (coordinate along the boundary, chain, whether it is the end of the chain)
         let mut crossings: Vec<(f64, usize, bool)> = Vec::new();
         for (i, chain) in chains.iter().enumerate() {
             for (point, end) in [(chain.first(), false), (chain.last(), true)] {

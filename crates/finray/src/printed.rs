@@ -20,7 +20,7 @@ pub struct PrintedFinger {
     pub measured: Option<String>,
     /// Outline of the profile.
     pub outline: Outline,
-    /// Thickness of the skin all round, m.
+    /// Thickness of the skin, m.
     pub skin: f64,
     /// Rule by which ribs fill the finger.
     pub ribs: Ribs,
@@ -41,7 +41,7 @@ pub struct PrintedFinger {
 pub struct Ribs {
     /// Thickness of a rib, m.
     pub thickness: f64,
-    /// Pitch across the ribs times the density (a share), m.
+    /// Product of the ribs' pitch and the density (0 to 1), m.
     pub line_spacing: f64,
     /// Point from which ribs are counted, m.
     pub origin: Point2<f64>,

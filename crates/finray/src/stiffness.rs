@@ -2,8 +2,8 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-/// Stiffness of a finger in its plane at the pad's middle: z along the pad towards the roof,
-/// y along its normal towards the part, rx about x = y x z by the right hand.
+/// Stiffness of a finger in its plane at the pad's middle: z along the pad towards the roof, y along its normal towards
+/// the part, rx about x = y x z (right-handed).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlanarStiffness {
     stiffness: Matrix3<f64>,
@@ -19,9 +19,10 @@ impl PlanarStiffness {
         Some(PlanarStiffness { stiffness, compliance })
     }
 
-    /// Returns a stiffness with the given stiffnesses in y and z, each with the other motions free, N/m, and with the
-    /// same tilting stiffness. The correlations of the compliances are kept, so the result is positive definite; the
-    /// distances of the remote centre scale with the square roots of new over old compliance.
+    /// Returns the stiffness with other values of [`in_compliance`](Self::in_compliance) and
+    /// [`in_assembly`](Self::in_assembly), N/m, and the same tilting stiffness. The correlations of the compliances are
+    /// unchanged, so the result is positive definite; the distances of the remote centre scale with the square roots of
+    /// new over old compliance.
     pub fn corrected(&self, compliance: f64, assembly: f64) -> Option<Self> {
         let free = [self.in_compliance() / compliance, self.in_assembly() / assembly, 1.0];
         let roots = Matrix3::from_diagonal(&Vector3::from(free.map(f64::sqrt)));
@@ -33,12 +34,12 @@ impl PlanarStiffness {
         &self.stiffness
     }
 
-    /// Returns the stiffness in y with z and rx free, N/m.
+    /// Returns the compliance stiffness: that in y (the compliance direction), with z and rx free, N/m.
     pub fn in_compliance(&self) -> f64 {
         1.0 / self.compliance[(0, 0)]
     }
 
-    /// Returns the stiffness in z with y and rx free, N/m.
+    /// Returns the assembly stiffness: that in z (the assembly direction), with y and rx free, N/m.
     pub fn in_assembly(&self) -> f64 {
         1.0 / self.compliance[(1, 1)]
     }
@@ -67,16 +68,16 @@ impl PlanarStiffness {
     }
 }
 
-/// Stiffness of a finger across its plane, at the pad's middle.
+/// Stiffness of a finger out of its plane, at the pad's middle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CrossStiffness {
     /// Stiffness matrix: N/m, N/rad, N m/rad; order x, ry, rz.
     pub matrix: Matrix3<f64>,
-    /// Stiffness in x, ry and rz free, N/m.
+    /// Stiffness in x, with ry and rz free, N/m.
     pub in_depth: f64,
-    /// Stiffness against rotation about y, x and rz free, N m/rad.
+    /// Stiffness against rotation about y, with x and rz free, N m/rad.
     pub about_y: f64,
-    /// Stiffness against rotation about z, x and ry free, N m/rad.
+    /// Stiffness against rotation about z, with x and ry free, N m/rad.
     pub about_z: f64,
 }
 

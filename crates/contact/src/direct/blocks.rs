@@ -1,7 +1,7 @@
 //! Elimination of bodies from the system matrix, six rows at a time.
 //!
 //! The matrix couples bodies that share a joint. Bodies that touch nothing (flange, jaws) are
-//! eliminated first by a block Cholesky factorisation, down to a small dense system of the others.
+//! eliminated first by a block Cholesky factorization, down to a small dense system of the others.
 
 use super::dense::Six;
 use nalgebra::{Cholesky, Const, Matrix6, SVector};
@@ -18,6 +18,7 @@ pub(super) struct Blocks {
     pub eliminated: usize,
     /// Blocks, row by row (row >= column); `None` if zero.
     blocks: Vec<Option<Matrix6<f64>>>,
+    /// Factors of the diagonal blocks of the eliminated bodies.
     factors: Vec<Cholesky<f64, Const<6>>>,
 }
 

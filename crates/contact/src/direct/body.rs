@@ -8,28 +8,29 @@ use nalgebra::{Matrix3, Matrix6, Point3, Translation3, UnitQuaternion, Vector3};
 #[derive(Debug, Clone)]
 pub(super) struct MovingBody {
     pub motion: Motion,
-    /// Place in the system if the solver determines the velocity.
+    /// Block row of the body in the system matrix, if the solver determines its velocity.
     pub place: Option<usize>,
-    /// Body frame in the world.
+    /// Pose of the body frame in the world.
     pub pose: Pose,
     /// Pose at the end of the step if the body is driven.
     pub target: Pose,
-    /// Zero for a body that does not move freely and for a mechanism.
+    /// Mass properties; zero for fixed and driven bodies and for a mechanism, whose mass is in `motion`.
     inertia: Inertia,
-    /// Centre of mass in the world, m; the body frame's origin if it has no mass.
+    /// Reference point of velocity and momentum in the world, m: the centre of mass, or the origin of the body frame if
+    /// `inertia` is zero.
     pub centre: Point3<f64>,
-    /// Velocity of the centre of mass, m/s, and angular velocity, rad/s, world axes.
+    /// Velocity of `centre`, m/s, and angular velocity, rad/s, world axes.
     pub velocity: Vector6,
-    /// Momentum and angular momentum about the centre of mass at the start of the step, N s,
-    /// N m s, world axes. They are carried from step to step instead of the velocities, which includes the
-    /// gyroscopic term to first order in the step (negligible in an insertion).
+    /// Momentum and angular momentum about `centre` at the start of the step, N s, N m s, world axes. To conserve them
+    /// from step to step, instead of the velocities, includes the gyroscopic term to first order in the step
+    /// (negligible in an insertion).
     pub momentum: Vector6,
     /// Inertia about the centre of mass, world axes, kg m2.
     tensor: Matrix3<f64>,
 }
 
 impl MovingBody {
-    /// Creates a body at rest; `place` is its place in the system if the solver determines its velocity.
+    /// Creates a body at rest; `place` is its block row in the system matrix, if the solver determines its velocity.
     pub fn new(body: &Body, place: Option<usize>) -> Self {
         let inertia = match body.motion {
             Motion::Free(inertia) | Motion::Carried(inertia) => inertia,
@@ -56,8 +57,8 @@ impl MovingBody {
         self.refresh();
     }
 
-    /// Returns the mass matrix about the centre of mass, world axes. The mass matrix of a mechanism rotates
-    /// with its end; its dependence on the configuration of the mechanism is neglected.
+    /// Returns the mass matrix about `centre`, world axes. That of a mechanism rotates with its end; its dependence on
+    /// the configuration of the mechanism is neglected.
     pub fn mass(&self) -> Matrix6<f64> {
         if let Motion::Mechanism(mass) = &self.motion {
             let both = block_rotation(&self.pose.rotation);
@@ -84,7 +85,7 @@ impl MovingBody {
         self.velocity = displacement(&self.pose, &self.target) / step;
     }
 
-    /// Moves the body by its velocity; the rotation is the exponential of the angular velocity.
+    /// Moves the body over a step: a driven body to its target, others with constant velocity and angular velocity.
     pub fn advance(&mut self, step: f64) {
         match self.motion {
             Motion::Fixed => return,
@@ -109,7 +110,7 @@ impl MovingBody {
         pose.chain(self.velocity.iter()).all(|x| x.is_finite())
     }
 
-    /// Updates the centre of mass and the inertia in world axes.
+    /// Updates `centre` and the inertia in world axes.
     fn refresh(&mut self) {
         self.centre = self.pose * self.inertia.centre;
         let axes = self.pose.rotation.to_rotation_matrix().into_inner();

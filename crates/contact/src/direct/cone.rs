@@ -13,7 +13,7 @@
 
 use nalgebra::{Matrix4, Vector4};
 
-/// Motion of a contact.
+/// State of a contact point: separated, sticking or sliding.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum State {
     Apart,

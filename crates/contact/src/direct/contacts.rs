@@ -1,5 +1,5 @@
-//! Collision detection: the points at which bodies of the listed pairs touch or are about to touch. While
-//! two shapes hardly move relative to one another, their points are reused and only the gaps are updated.
+//! Collision detection: the points at which two bodies of a scene's contact pairs touch or are about to touch. While
+//! two geoms hardly move relative to one another, their contact points are reused and only the gaps are updated.
 
 mod lines;
 mod near;
@@ -18,33 +18,35 @@ use parry::shape::{Cuboid, SharedShape, SupportMap};
 use rapier3d_f64::parry;
 use std::sync::Arc;
 
-/// Units of length of the shapes in a metre: some of parry's tolerances are absolute and made for
-/// parts of 1 m (in metres it drops the crossing of edges of 1 mm at less than a degree).
+/// Millimetres in a metre. parry computes in mm: some of its tolerances are absolute and made for parts of about 1 unit
+/// (in metres it misses the contact of two edges of 1 mm that cross at less than a degree).
 const MILLIMETRES: f64 = 1e3;
-/// Distance from a surface within which a neighbouring shape covers it, m.
+/// Distance in front of a surface at which a point in a neighbouring geom shows that the surface is covered, m.
 const COVER: f64 = 20e-6;
-/// Tolerance of that test, m: more than the penetration of a contact, less than any gap.
+/// Tolerance of that test, m: less than any gap between parts.
 const SEAM: f64 = 2e-6;
-/// Relative displacement of two shapes up to which their contact points are reused, m: a hundredth of the
-/// offset grid, a twentieth of the prediction distance.
+/// Relative displacement of two geoms up to which their contact points are reused, m: a twentieth of the default
+/// prediction distance.
 const REUSE: f64 = 10e-6;
-/// The same for round shapes, as a share of their radius: the rotation of the normal, rad.
+/// Relative displacement, divided by the radius, up to which the contact points of round geoms are reused: the rotation
+/// of the normal, rad.
 const ROUND_REUSE: f64 = 2e-3;
 
-/// Number of pairs of shapes of two bodies above which only contacts whose gap may close within a step are predicted:
+/// Number of geom pairs of two bodies above which only contacts whose gap may close within a step are predicted:
 /// an imported surface has hundreds of facets within the prediction distance, and all would be tested in each step.
 const MANY_PAIRS: usize = 2_000;
-/// Smallest prediction distance for such a pair of bodies, m.
+/// Prediction distance of such a body pair at rest, m; the largest relative displacement in a step is added to it.
 const NEAR: f64 = 20e-6;
 
-/// Point of contact between two bodies.
+/// Contact point of two bodies.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Touch {
-    /// Number of its pair of bodies in the scene.
+    /// Index of the body pair in the scene's contacts.
     pub pair: usize,
-    /// Number of its first pair of geoms, which identifies its patch; the points of a patch are consecutive.
+    /// Number of the geom pair; once joined to a patch, that of the first geom pair of the patch, which identifies it.
+    /// The points of a patch are consecutive.
     pub geoms: usize,
-    /// Midway between the two surfaces, world, m.
+    /// Position midway between the two surfaces, world, m.
     pub point: Point3<f64>,
     /// Unit normal from the first body to the second, world.
     pub normal: Vector3<f64>,
@@ -54,62 +56,62 @@ pub(super) struct Touch {
     pub friction: Friction,
 }
 
-/// Geom with its parry shape.
+/// Geom with its parry shape and bounding volumes.
 #[derive(Clone)]
 struct Solid {
     body: usize,
     friction: Option<f64>,
     shape: SharedShape,
-    /// Core and radius of a round shape, mm.
+    /// Core and radius of a round geom ([`Shape::RoundBox`]), mm.
     round: Option<(Cuboid, f64)>,
     /// Outward normals of the faces of a hull, and distances of their planes from the origin, mm.
     faces: Vec<(Vector3<f64>, f64)>,
-    /// parry's frame of the shape in the body frame.
+    /// Pose of parry's frame of the shape in the body frame.
     pose: Pose,
-    /// Enclosing box: its frame in the body frame, and half extents, m.
+    /// Enclosing box: pose of its frame in the body frame, and half extents, m.
     frame: Pose,
     half: Vector3<f64>,
-    /// Enclosing box in the world's axes, m.
+    /// Bounding box along the world's axes, m.
     aabb: Aabb,
-    /// Pose of the body for which the world's box, its axes and its centre were computed.
+    /// Pose of the body for which `aabb`, `axes` and `centre` were computed.
     enclosed_at: Option<Pose>,
-    /// Axes and centre of the enclosing box in the world.
+    /// Axes and centre of the enclosing box in the world, m.
     axes: Matrix3<f64>,
     centre: Vector3<f64>,
-    /// Farthest point of the shape from the origin of parry's frame, m.
+    /// Upper bound of the distance of the shape's points from the origin of its frame, m.
     reach: f64,
-    /// Other shapes of the same body that may cover a part of this one.
+    /// Other geoms of the same body that may cover a part of this one.
     neighbours: Arc<[Neighbour]>,
 }
 
-/// Neighbouring shape of the same body; the boxes of all neighbours are contiguous in memory.
+/// Neighbouring geom of the same body; the boxes of all neighbours are contiguous in memory.
 struct Neighbour {
     solid: usize,
-    /// Box that encloses the shape and all points that it may cover, body frame, m.
+    /// Box that encloses the geom and all points that it may cover, body frame, m.
     aabb: Aabb,
 }
 
-/// Pair of shapes that may touch.
+/// Geom pair with its contact points, which are reused while it hardly moves.
 #[derive(Clone)]
 struct Candidate {
     pair: GeomPair,
     manifold: ContactManifold<(), ()>,
-    /// Pose of the second shape in the frame of the first for which the points were computed.
+    /// Pose of the second shape in the frame of the first for which the contact points were computed.
     computed_at: Option<Pose>,
-    /// Normal, in the frame of the first shape.
+    /// Normal from the first shape to the second, in the frame of the first.
     axis: Vector3<f64>,
     /// Points on the surfaces of both shapes, each in the frame of its shape, m.
     points: Vec<[Point3<f64>; 2]>,
 }
 
-/// Shapes of a scene and the pairs of them that may touch.
+/// Geoms of a scene and the pairs of them that may touch.
 #[derive(Clone)]
 pub(super) struct Detector {
     solids: Vec<Solid>,
-    /// Pairs of bodies, in the order of the scene.
+    /// Lists of the body pairs, in the order of the scene's contacts.
     lists: Vec<NearList>,
     prediction: f64,
-    /// Whether a shape has round edges.
+    /// Whether a geom has round edges.
     pub has_round_shapes: bool,
 }
 
@@ -146,7 +148,7 @@ impl Detector {
         Detector { lists, solids, prediction, has_round_shapes }
     }
 
-    /// Finds the contacts at the bodies' poses.
+    /// Detects the contacts at the bodies' poses and those predicted for a step of `step_s`, s.
     pub fn detect(&mut self, bodies: &[MovingBody], step_s: f64, found: &mut Vec<Touch>) {
         found.clear();
         for list in &mut self.lists {
@@ -208,7 +210,8 @@ impl Solid {
         solid
     }
 
-    /// Returns the core, in parry's frame, and the radius, mm; the core of a sharp shape is the shape itself.
+    /// Returns the core, in parry's frame, and the radius, mm; without round edges, the shape itself and 0. `None` if
+    /// parry has no support function for the shape.
     fn core(&self) -> Option<(&dyn SupportMap, f64)> {
         match &self.round {
             Some((core, radius)) => Some((core, *radius)),
@@ -216,7 +219,7 @@ impl Solid {
         }
     }
 
-    /// Updates the enclosing box in the world's axes.
+    /// Updates enclosing box and bounding box in the world for a pose of the body.
     fn enclose(&mut self, body: &Pose) {
         if self.enclosed_at.as_ref() == Some(body) {
             return;
@@ -229,7 +232,8 @@ impl Solid {
         self.aabb = Aabb::from_half_extents(self.centre.into(), reach.into());
     }
 
-    /// Returns whether the enclosing boxes are farther apart than a margin, m, along a face normal of one of them.
+    /// Returns whether the enclosing boxes are farther apart than a margin, m, along a face normal of one of them
+    /// (separating axis test without the cross products of edges).
     fn separated(&self, other: &Solid, margin: f64) -> bool {
         let apart = self.centre - other.centre;
         let turn = self.axes.tr_mul(&other.axes);
@@ -238,12 +242,13 @@ impl Solid {
         own.max() > margin || others.max() > margin
     }
 
-    /// Returns whether the enclosing boxes in the world's axes are farther apart than a margin, m.
+    /// Returns whether the bounding boxes along the world's axes are farther apart than a margin, m.
     fn apart(&self, other: &Solid, margin: f64) -> bool {
         !self.aabb.loosened(margin).intersects(&other.aabb)
     }
 
-    /// Returns whether a neighbour covers a place on the surface, given in parry's frame of the shape, m.
+    /// Returns whether a neighbour covers a point of the surface; point, m, and outward normal are in parry's frame of
+    /// the shape.
     fn covered(&self, place: &Vector3<f64>, outward: &Vector3<f64>, solids: &[Solid]) -> bool {
         let outside = self.pose * Point3::from(place + outward * COVER);
         self.neighbours.iter().any(|&Neighbour { solid: j, aabb }| {
@@ -259,7 +264,8 @@ impl Solid {
         })
     }
 
-    /// Returns the distance of a point, in parry's frame, mm; 0 inside. Above `SEAM` it is a lower bound.
+    /// Returns the distance of a point in parry's frame from the shape, mm; 0 inside. Above [`SEAM`] it is a lower
+    /// bound.
     fn distance(&self, place: &Vector3<f64>) -> f64 {
         if let Some((core, radius)) = &self.round {
             let beside = place.abs() - Vector3::from(core.half_extents);
@@ -276,7 +282,8 @@ impl Solid {
     }
 }
 
-/// Returns the planes of a hull's faces.
+/// Returns the outward normals of a hull's faces and the distances of their planes from the origin, mm; none for other
+/// shapes.
 fn faces(shape: &SharedShape) -> Vec<(Vector3<f64>, f64)> {
     let Some(hull) = shape.as_convex_polyhedron() else { return Vec::new() };
     let farthest = |normal: &Vector3<f64>| {
@@ -291,7 +298,7 @@ fn faces(shape: &SharedShape) -> Vec<(Vector3<f64>, f64)> {
 fn has_stayed(before: Option<&Pose>, now: &Pose, reach: f64, distance: f64) -> bool {
     before.is_some_and(|before| {
         let moved = (now.translation.vector - before.translation.vector).norm();
-        // Its norm is half the angle if that is small, and about 2 if the quaternion has changed its sign.
+        // The norm is half the angle if that is small, and about 2 if the quaternion has changed its sign.
         let turned = now.rotation.coords - before.rotation.coords;
         moved + 2.0 * turned.norm() * reach < distance
     })
@@ -303,7 +310,7 @@ impl Candidate {
         Candidate { pair, manifold, computed_at: None, axis: Vector3::zeros(), points }
     }
 
-    /// Appends the points at the bodies' poses, computed again if the shapes have moved.
+    /// Appends the contact points at the bodies' poses; computes them again only if the geoms have moved.
     fn find(
         &mut self,
         geoms: usize,
@@ -350,8 +357,8 @@ impl Candidate {
         }
     }
 
-    /// Removes the points on faces that another shape of the same body covers: at a seam of flush
-    /// parts, an edge that has sunk by 0.1 um would catch on the hidden end face of the next part.
+    /// Removes the contact points that another geom of the same body covers: at a seam of flush parts, an edge that has
+    /// penetrated by 0.1 um would catch on the hidden end face of the next part.
     fn drop_covered(&mut self, solids: &[Solid]) {
         let manifold = &mut self.manifold;
         let outward = [manifold.local_n1, manifold.local_n2].map(Vector3::from);
@@ -365,7 +372,8 @@ impl Candidate {
         });
     }
 
-    /// Keeps the manifold's extreme points.
+    /// Stores the points within the prediction distance; if there are more than [`patches::MAX_POINTS`], only the
+    /// extreme ones.
     fn choose(&mut self, prediction: f64) {
         let limit = prediction * MILLIMETRES;
         self.manifold.points.retain(|point| point.dist <= limit);
@@ -387,7 +395,7 @@ impl Candidate {
         patches::extremes(count, middle, gap, &axis).into_iter().for_each(add);
     }
 
-    /// Appends the points with their current gaps.
+    /// Appends the stored points with their current gaps.
     fn report(&self, geoms: usize, first: &Pose, relative: &Pose, found: &mut Vec<Touch>) {
         let normal = first.rotation * self.axis;
         for [own, other] in &self.points {

@@ -44,8 +44,8 @@ fn multiply_unrolled(matrix: &[Six], vector: &[Six], result: &mut [Six], blocks:
 }
 
 /// Computes the Cholesky factorization `U^T U` of a matrix with this number of blocks in a row; returns `None` if the
-/// matrix is not positive definite (or not finite). `U` replaces the upper half, with the reciprocals of its diagonal;
-/// the lower half is undefined afterwards.
+/// matrix is not positive definite (or not finite). `U` replaces the upper half, except that each element of its
+/// diagonal is stored as the reciprocal; the lower half is undefined afterwards.
 pub(super) fn factor(matrix: &mut [Six], blocks: usize) -> Option<()> {
     unrolled!(blocks, factor_unrolled(matrix))
 }

@@ -1,9 +1,9 @@
 //! Shorter steps through impacts of round edges.
 //!
-//! A plug of 20 g meets a corner of 0.55 N/um within 0.3 ms. A step that is longer than that spreads the
-//! impulse, the pads hold it by friction, and the plug slips less in the grasp than it should. With sharp
-//! edges windows do not depend on that; on round rims the plug then turns instead of sliding, and the
-//! ends of windows move by up to 1.2 mm (`docs/notes/simulation.md`, "Round edges").
+//! The impact of a plug of 20 g on a corner of 0.55 N/um lasts 0.3 ms. A longer step spreads the impulse over its
+//! length, friction of the pads resists it, and the plug slips too little in the grasp. With sharp edges this does not
+//! change the window (the offsets at which an insertion succeeds); on round rims the plug then turns instead of
+//! sliding, and the ends of a window move by up to 1.2 mm (`docs/notes/simulation.md`, "Round edges").
 
 use super::body::MovingBody;
 use super::world::DirectWorld;

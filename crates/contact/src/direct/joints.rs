@@ -1,9 +1,8 @@
 //! Joints as implicit springs and dampers.
 //!
-//! With the coordinates `q` (translations of the child's joint frame along, and the rotation
-//! vector about, the axes of the parent's) and their exact Jacobian `J`, the force at the end of
-//! the step, `f = -k (q + h J v - target) - c J v`, adds `J^T (h c + h^2 k) J` to the system and
-//! `-h J^T k (q - target)` to its right-hand side: stable for any stiffness, and exact at rest.
+//! The coordinates `q` are translation and rotation vector of the child's joint frame in the parent's. With their exact
+//! Jacobian `J`, the force at the end of the step, `f = -k (q + h J v - target) - c J v`, adds `J^T (h c + h^2 k) J` to
+//! the system and `-h J^T k (q - target)` to its right-hand side: stable for any stiffness, and exact at rest.
 //! `k` and `c` are a number for each axis or, for coupled springs, a matrix. A locked axis is a
 //! very stiff spring (0.1 um at 100 N). A servo at its limit exerts that limit; the step is solved
 //! again until the servos found at their limits are those assumed for the solution.
@@ -21,8 +20,8 @@ const LOCKED: f64 = 1e9;
 /// Stiffness of a locked rotation, N m/rad: as stiff at an arm of 30 mm.
 const LOCKED_TURN: f64 = 1e6;
 
-/// Matrix that maps the rates of a joint at the end of the step to its impulse, `h c + h^2 k`; diagonal unless the
-/// springs are coupled.
+/// Matrix `h c + h^2 k` that maps the rates of a joint at the end of the step to the impulse that opposes them;
+/// diagonal unless the springs are coupled.
 #[expect(clippy::large_enum_variant, reason = "lives on the stack of one call")]
 enum ImplicitDamping {
     Diagonal(Vector6),
@@ -58,7 +57,7 @@ pub(super) struct SpringJoint {
     saturated: [f64; 6],
     /// Coordinates, m, rad.
     position: Vector6,
-    /// Jacobians of the coordinates by the child's and by the parent's velocity.
+    /// Jacobians of the rates of the coordinates with respect to the velocities of child and parent.
     by_child: Matrix6<f64>,
     by_parent: Matrix6<f64>,
 }
@@ -118,7 +117,7 @@ impl SpringJoint {
         }
     }
 
-    /// Computes the coordinates and their Jacobian at the bodies' poses.
+    /// Computes the coordinates and their Jacobians at the bodies' poses.
     pub fn locate(&mut self, bodies: &[MovingBody]) {
         let (parent, child) = (&bodies[self.joint.parent.0], &bodies[self.joint.child.0]);
         let (p, c) = (parent.pose * self.joint.in_parent, child.pose * self.joint.in_child);
@@ -128,7 +127,7 @@ impl SpringJoint {
         self.position.fixed_rows_mut::<3>(3).copy_from(&turn);
         let axes = p.rotation.inverse().to_rotation_matrix().into_inner();
         let angular = inverse_left_jacobian(&turn) * axes;
-        // The points of both bodies at the origin of the child's joint frame.
+        // Both Jacobians refer to the body points at the origin of the child's joint frame.
         let place = c.translation.vector;
         self.by_child = jacobian(&axes, &angular, &(place - child.centre.coords));
         self.by_parent = -jacobian(&axes, &angular, &(place - parent.centre.coords));
@@ -205,10 +204,10 @@ impl SpringJoint {
             let &Spring { stiffness, damping, target, limit } = spring;
             let end = self.position[i] + step * rate[i];
             let force = -stiffness * (end - target) - damping * rate[i];
-            // With a margin, so that rounding errors cannot alternate between both.
+            // With a margin, so that rounding errors do not make the solutions alternate.
             let beyond = force.abs() > limit * (1.0 + 1e-9);
             let sign = if beyond { force.signum() } else { 0.0 };
-            // Friction that would change its sign sticks first; otherwise it would never stick.
+            // Before friction changes its sign, sticking is tried; otherwise the signs could alternate for ever.
             let reverses = stiffness == 0.0 && sign == -before[i];
             self.saturated[i] = if reverses { 0.0 } else { sign };
         }
@@ -216,7 +215,7 @@ impl SpringJoint {
     }
 }
 
-/// Returns the Jacobian of `axes (v + w x arm)` and `angular w` by the velocity `v`, `w`.
+/// Returns the Jacobian of `axes (v + w x arm)` and `angular w` with respect to `v` and `w`.
 fn jacobian(axes: &Matrix3<f64>, angular: &Matrix3<f64>, arm: &Vector3<f64>) -> Matrix6<f64> {
     let mut made = Matrix6::zeros();
     made.fixed_view_mut::<3, 3>(0, 0).copy_from(axes);
@@ -225,9 +224,9 @@ fn jacobian(axes: &Matrix3<f64>, angular: &Matrix3<f64>, arm: &Vector3<f64>) -> 
     made
 }
 
-/// Returns the rate of the rotation vector by the angular velocity in the same (parent's) axes:
-/// `1 - [t]/2 + (1/|t|^2 - cot(|t|/2)/(2 |t|)) [t]^2` (Bullo and Murray 1995, "Proportional
-/// derivative control on the Euclidean group").
+/// Returns the matrix that maps the angular velocity to the rate of the rotation vector `t`, both in the parent's axes:
+/// `1 - [t]/2 + (1/|t|^2 - cot(|t|/2)/(2 |t|)) [t]^2` (Bullo and Murray 1995, "Proportional derivative control on the
+/// Euclidean group").
 fn inverse_left_jacobian(turn: &Vector3<f64>) -> Matrix3<f64> {
     let angle = turn.norm();
     let cross = turn.cross_matrix();

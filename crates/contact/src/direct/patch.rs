@@ -1,15 +1,14 @@
 //! Friction of a contact patch against rotation about its normal, from the contact points of the patch.
 //!
-//! The contact points are the corners of the patch. Friction at the corners would resist a rotation
-//! with their lever arms, which are longer than those inside the patch. So friction acts beside each
-//! point, nearer to the centre of pressure, so that the mean lever arm is that of the evenly pressed
-//! patch; the normal force stays at the point. Sliding without rotation is then still resisted at the
-//! centre of pressure (Mason 1986, Int. J. Robot. Res. 5:53), and rotation by `mu N` times the mean
-//! lever arm.
+//! The contact points are the corners of the patch. Friction at the corners would resist a rotation with their lever
+//! arms, which are longer than those inside the patch. So the friction of each point acts nearer to the centre of
+//! pressure, such that the mean lever arm is that of a patch under uniform pressure; the normal force remains at the
+//! point. Sliding without rotation is then still resisted at the centre of pressure (Mason 1986, Int. J. Robot. Res.
+//! 5:53), and rotation by `mu N` times the mean lever arm.
 //!
-//! An even pressure whose centre is beside the middle acts on the part of the rectangle about
-//! that centre (Meyerhof 1953, 3rd Int. Conf. Soil Mech.): half of its length is the distance from
-//! the centre of pressure to the nearer edge.
+//! If the load is eccentric, the uniform pressure acts on the smaller rectangle that has its middle at the centre of
+//! pressure (Meyerhof 1953, 3rd Int. Conf. Soil Mech.): half of its length is the distance from there to the nearer
+//! edge.
 
 use crate::scene::Pose;
 use nalgebra::{Point3, Vector3};
@@ -17,10 +16,10 @@ use nalgebra::{Point3, Vector3};
 /// Contact patch, which determines where the friction of its contact points acts.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Patch {
-    /// Centre of pressure in the frame of the given points, m.
+    /// Centre of pressure in the frame in which the points were given, m.
     centre: Point3<f64>,
-    /// Distance from the centre of pressure at which the friction of a point acts, as a share of the point's own
-    /// distance.
+    /// Distance from the centre of pressure at which the friction of a point acts, divided by the distance of the
+    /// point.
     share: f64,
 }
 
@@ -41,16 +40,16 @@ impl Patch {
         Patch { centre, share }
     }
 
-    /// Returns the vector, m, from a point to the place where its friction acts; `frame` is the pose of the patch's
-    /// frame.
+    /// Returns the vector, m, from a contact point to the point at which its friction acts, world axes; `frame` is the
+    /// pose of the patch's frame in the world.
     pub fn offset(&self, frame: &Pose, point: &Point3<f64>, normal: &Vector3<f64>) -> Vector3<f64> {
         let inward = (frame * self.centre - point) * (1.0 - self.share);
         inward - normal * inward.dot(normal)
     }
 }
 
-/// Returns the half sides of the pressed rectangle about the centre of pressure, m. The points are corners
-/// of a rectangle, so that the line from one to the nearest is an edge.
+/// Returns the half sides of the loaded rectangle about the centre of pressure, m. The points are corners of a
+/// rectangle, so that the line from one to the nearest is an edge.
 fn pressed(points: &[(Point3<f64>, f64)], centre: &Point3<f64>, normal: &Vector3<f64>) -> [f64; 2] {
     let offsets = points[1..].iter().map(|(point, _)| point - points[0].0);
     let nearest = offsets.min_by(|a, b| a.norm_squared().total_cmp(&b.norm_squared()));

@@ -1,11 +1,11 @@
 //! The velocities at the end of a step: Newton's method on a convex potential.
 //!
-//! With the reduced system `S`, right-hand side `r` and the contacts' potentials the velocities
-//! minimise `v.S v/2 - r.v + sum of potentials`; its gradient is the out-of-balance impulse
-//! `S v - r - sum J^T l`. The potential's cone law has associated friction, which would lift a
-//! sliding contact by `mu |u_t| h`; the term `s = mu |u_t|` of De Saxce and Feng (1998, Math.
-//! Comput. Modelling 28) compensates this, by fixed-point iterations around Newton's (Acary,
-//! Cadoux, Lemarechal and Malick 2011, ZAMM 91).
+//! With the reduced system `S` (bodies without contacts eliminated), right-hand side `r` and the contacts' potentials,
+//! the velocities minimise `v.S v/2 - r.v + sum of potentials`; its gradient is the out-of-balance impulse `S v - r -
+//! sum J^T l` (contact Jacobians `J`, impulses `l`). The potential implies associated friction, which would lift a
+//! sliding contact by `mu |u_t| h` in a step `h`; the term `s = mu |u_t|` of De Saxce and Feng (1998, Math. Comput.
+//! Modelling 28) compensates this, by fixed-point iterations around Newton's (Acary, Cadoux, Lemarechal and Malick
+//! 2011, ZAMM 91).
 
 use super::blocks::Vector6;
 use super::cone::{Cone, SplitVelocity, State};
@@ -14,13 +14,13 @@ use nalgebra::{Matrix4, Matrix4x3, Vector3, Vector4};
 
 /// Out-of-balance force below which the iterations end, N; moments are divided by [`ARM`].
 const FORCE_TOLERANCE: f64 = 1e-4;
-/// Out-of-balance force below which the iterations end, as a share of the largest normal force.
+/// Out-of-balance force below which the iterations end, relative to the largest normal force.
 const FORCE_SHARE: f64 = 1e-3;
 /// Lever arm by which moments are divided to compare them with forces, m.
 const ARM: f64 = 0.01;
 /// Largest number of Newton iterations in a step.
 const MAX_ITERATIONS: usize = 60;
-/// Accepted error of the sliding term, m/s: 0.1 um in a step of 0.1 ms.
+/// Accepted error of the sliding term, m/s: 0.5 um in the default step of 0.5 ms.
 const SLIDING_TOLERANCE: f64 = 1e-3;
 /// Largest number of evaluations of a line search.
 const MAX_LINE_SEARCH_STEPS: usize = 30;
@@ -36,8 +36,8 @@ pub(super) fn lever(arm: &Vector3<f64>, patch: &Vector3<f64>) -> Matrix4x3<f64> 
     lever
 }
 
-/// Returns the lever of a contact point without patch radius whose friction acts at an offset `aside`, m: its linear
-/// velocity then includes that of the offset point due to rotation about the normal.
+/// Returns the matrix of [`lever`] for a contact point without patch radius whose friction acts at another point, at
+/// the offset `aside`, m: the velocity due to rotation about the normal is that of the other point.
 pub(super) fn offset_lever(
     arm: &Vector3<f64>,
     aside: &Vector3<f64>,
@@ -65,7 +65,8 @@ pub(super) struct Contact {
     pub normal: Vector4<f64>,
     /// Relative velocity due to driven bodies, m/s.
     pub drift: Vector4<f64>,
-    /// Largest approach velocity that the gap allows, `gap / h`, m/s.
+    /// Velocity added to the normal velocity, m/s: `gap / h`; for a penetration, with stiffness `k` and damping `c`,
+    /// times `k h / (k h + c)` and at least `-push_out`.
     pub bias: f64,
     /// Friction cone of the contact law.
     pub cone: Cone,
@@ -82,7 +83,7 @@ pub(super) struct Contact {
 }
 
 impl Contact {
-    /// Returns the relative velocity due to the velocities of the free bodies.
+    /// Returns the relative velocity due to the velocities of the reduced system, m/s.
     fn relative(&self, velocities: &[Six]) -> Vector4<f64> {
         let mut sum = Vector4::zeros();
         for (side, sign) in [(0, -1.0), (1, 1.0)] {
@@ -115,7 +116,7 @@ impl Contact {
 /// Reduced problem and its workspace.
 #[derive(Clone)]
 pub(super) struct Solver {
-    /// Matrix of the reduced system, row by row.
+    /// Matrix of the reduced system, row by row, both halves.
     pub system: Vec<Six>,
     /// Right-hand side.
     pub rhs: Vec<Vector6>,
@@ -141,7 +142,7 @@ impl Solver {
         }
     }
 
-    /// Solves for the velocities; returns `None` if the numbers are not finite.
+    /// Solves for the velocities; returns `None` if a Hessian is not positive definite or not finite.
     pub fn solve(&mut self, contacts: &mut [Contact], step: f64) -> Option<()> {
         let mut iterations = 0;
         self.update_velocities(contacts);
@@ -150,7 +151,7 @@ impl Solver {
         }
         for _ in 0..MAX_ROUNDS {
             while iterations < MAX_ITERATIONS {
-                // A NaN passes this test; the factorization then fails.
+                // A NaN does not end the iterations; the factorization then fails.
                 let slope = self.update_gradient(contacts);
                 let pressed = contacts.iter().map(|c| c.impulse.dot(&c.normal)).fold(0.0, f64::max);
                 if slope < (step * FORCE_TOLERANCE).max(FORCE_SHARE * pressed) {
@@ -167,7 +168,7 @@ impl Solver {
             }
             let mut error: f64 = 0.0;
             for contact in contacts.iter_mut() {
-                // With the sliding term that the velocities were solved with.
+                // The impulse belongs to the sliding term for which the velocities were solved.
                 contact.apply();
                 if contact.cone.state(&contact.split) != State::Apart {
                     let now = contact.sliding();
@@ -242,13 +243,14 @@ impl Solver {
         Some(())
     }
 
-    /// Returns the step length along the direction: 1, or less if the potential rises before.
+    /// Returns the step length along the direction: 1, or about that of the minimum if the potential rises steeply at
+    /// 1.
     fn line_search(&mut self, contacts: &[Contact]) -> f64 {
         let dot = |a: &[Six], b: &[Six]| {
             a.iter().zip(b).map(|(a, b)| Vector6::from(*a).dot(&Vector6::from(*b))).sum::<f64>()
         };
         let first = dot(&self.gradient, &self.direction);
-        // Along the line, the slope of the quadratic part is linear in the step length.
+        // The slope of the quadratic part along the direction is linear in the step length.
         dense::multiply(&self.system, &self.direction, &mut self.gradient);
         let curvature = dot(&self.gradient, &self.direction);
         let pushed = |along: f64| -> f64 {
@@ -281,8 +283,8 @@ impl Solver {
     }
 }
 
-/// Adds `J^T K J` of a contact to the upper half, with `J = [1, lever]` on each side, up to sign.
-/// `K` is symmetric, so `(K lever)^T` is `lever^T K`.
+/// Adds `J^T K J` of a contact to the upper half of the Hessian, with `J = [1, lever]` for the second body and its
+/// negative for the first. `K` is symmetric, so `(K lever)^T` is `lever^T K`.
 fn add_stiffness(hessian: &mut [Six], bodies: usize, contact: &Contact, k: &Matrix4<f64>) {
     let [first, second] = contact.place;
     let across = [k * contact.lever[0], k * contact.lever[1]];
@@ -310,7 +312,7 @@ fn add_stiffness(hessian: &mut [Six], bodies: usize, contact: &Contact, k: &Matr
     }
 }
 
-/// Returns the scalar product, in the order in which nalgebra adds up products of any length.
+/// Returns the scalar product, summed in the order of nalgebra's products of any size.
 #[inline(always)]
 fn dot(a: &[f64; 4], b: &[f64; 4]) -> f64 {
     (a[0] * b[0] + a[2] * b[2]) + (a[1] * b[1] + a[3] * b[3])

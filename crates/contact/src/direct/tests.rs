@@ -92,7 +92,7 @@ fn a_servo_pushes_with_its_limit_and_no_more() {
     assert!((speed - 0.5).abs() < 1e-9, "{speed}");
 }
 
-/// A body in free flight at this velocity, its moments of inertia unlike.
+/// A body in free flight at this velocity, with three different moments of inertia.
 fn flying(velocity: Vector6<f64>) -> DirectWorld {
     let moments = Vector3::new(8.3e-7, 6.2e-6, 6.7e-6);
     let mut scene = Scene::default();

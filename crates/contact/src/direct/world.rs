@@ -15,7 +15,7 @@ use crate::{ContactForce, ContactPoint, Diverged, World};
 use nalgebra::{Vector3, Vector4};
 use std::collections::BTreeMap;
 
-/// Largest number of solutions of a step, to find the servos that are at their limits.
+/// Largest number of solves of a step, which are repeated until the servos at their limits are known.
 const TRIES: usize = 5;
 
 /// State of the simulation of a scene; a clone continues bit for bit as the original does.
@@ -33,13 +33,13 @@ pub(super) struct DirectWorld {
     pub forces: Vec<ContactForce>,
     pub detector: Detector,
     system: Blocks,
-    /// Right-hand side, then solution, by place in the system.
+    /// Right-hand side, then solution, by block row of the system matrix.
     values: Vec<Vector6>,
     /// Force at the centre of mass and moment applied to each body, N, N m.
     pushes: Vec<Vector6>,
     solver: Solver,
     pub touches: Vec<Touch>,
-    /// Number of coming steps that will be divided.
+    /// Number of following steps to divide (`impact.rs`).
     pub divided: usize,
     contacts: Vec<Contact>,
     /// Contact patches by their numbers ([`Touch::geoms`]).
@@ -111,7 +111,7 @@ impl DirectWorld {
         }
     }
 
-    /// Adds the missing patches with the loads of their contacts, or with equal loads before the contacts are set.
+    /// Adds the missing patches, with the loads of the solved contacts, or with equal loads if there are none yet.
     fn add_patches(&mut self) {
         let mut from = 0;
         for touches in self.touches.chunk_by(|a, b| a.geoms == b.geoms) {
@@ -168,7 +168,7 @@ impl DirectWorld {
         }
     }
 
-    /// Sets the limit of the axial friction at the present poses.
+    /// Sets the limit of the axial friction for the current poses.
     fn update_axial_friction(&mut self) {
         let (Some(along), Some(joint)) = (&self.axial_friction, self.joints.last_mut()) else {
             return;
@@ -215,8 +215,9 @@ impl DirectWorld {
     }
 }
 
-/// Returns the place of each dynamic body in the system (`None` for other bodies), the number of bodies that are eliminated, and the number of
-/// dynamic bodies. Bodies without contacts come first, in the order of their number of joints: little fill-in.
+/// Returns the block row of each dynamic body in the system matrix (`None` for other bodies), the number of eliminated
+/// bodies, and the number of dynamic bodies. Bodies without contacts come first, ordered by their number of joints, for
+/// little fill-in.
 fn places(scene: &Scene) -> (Vec<Option<usize>>, usize, usize) {
     let dynamic = |i: &usize| !matches!(scene.bodies[*i].motion, Motion::Fixed | Motion::Driven);
     let touching = |i: &usize| scene.contacts.iter().any(|pair| pair.contains(BodyId(*i)));

@@ -21,10 +21,10 @@ const COLOURS: [[f64; 3]; 6] = [
 ];
 /// Smallest half thickness of a mesh, m.
 const THIN: f64 = 1e-6;
-/// Opacity of fixed bodies.
+/// Opacity of fixed bodies, 0 to 1.
 const SEE_THROUGH: f64 = 0.5;
 
-/// Returns the `worldbody`: a light, and the bodies, with each child of a joint inside its parent.
+/// Returns the `worldbody`: a light, and the bodies; the child of a joint is nested in its parent.
 pub(super) fn world(scene: &Scene) -> Element {
     let names = geom_names(scene);
     let is_root = |body: &usize| !scene.joints.iter().any(|joint| joint.child.0 == *body);
@@ -35,9 +35,9 @@ pub(super) fn world(scene: &Scene) -> Element {
         let root = &scene.bodies[body];
         let placed = body_element(root, &root.pose);
         let rooted = match root.motion {
-            // Movable, since the trial shifts the socket and removes the stand.
+            // Movable: the simulation of an insertion shifts the socket and removes the plug's stand.
             Motion::Fixed => placed.with("mocap", "true"),
-            // Slides along and hinges about the axes of its initial pose.
+            // Slides and hinges along the axes of its initial pose.
             Motion::Driven => placed.with_children(
                 (0..6).map(|i| joint_element(&driven_axis_name(root, i), &Pose::identity(), i)),
             ),
@@ -63,7 +63,7 @@ fn contents(scene: &Scene, body: usize, names: &[Vec<String>]) -> Vec<Element> {
     list
 }
 
-/// Returns the ends of the tendon with the axial friction that are on a body.
+/// Returns the attachment points, on a body, of the tendon with the axial friction.
 fn sites(friction: &AxialFriction, body: BodyId) -> impl Iterator<Item = Element> {
     let ends = [(friction.parent, ANCHOR, -FAR), (friction.child, MATING_FORCE, 0.0)];
     let own = ends.into_iter().filter(move |(of, ..)| *of == body);
@@ -109,7 +109,7 @@ fn joint_elements(joint: &Joint) -> Vec<Element> {
     let element = |(i, axis): (usize, &Option<Spring>)| {
         let spring = axis.as_ref()?;
         let element = joint_element(&axis_name(joint, i), &joint.in_child, i);
-        // A servo is an actuator.
+        // The spring of a servo is written as an actuator.
         if spring.limit.is_finite() {
             return Some(element);
         }
@@ -151,7 +151,7 @@ fn geom_element(scene: &Scene, body: usize, geom: &Geom, name: &str) -> Element 
     element.numbers("rgba", [r, g, b, if fixed { SEE_THROUGH } else { 1.0 }])
 }
 
-/// Returns the rotation of a capsule from MuJoCo's axis, z, to the axis of its core.
+/// Returns the rotation of a capsule from MuJoCo's axis, z, to the axis of its core; the identity for other shapes.
 fn upright(geom: &Geom) -> Pose {
     let Shape::RoundBox { core, .. } = &geom.shape else { return Pose::identity() };
     let turn = match extended(core)[..] {
@@ -165,7 +165,7 @@ fn upright(geom: &Geom) -> Pose {
 fn mesh_points(shape: &Shape) -> Option<Vec<Point3<f64>>> {
     match shape {
         Shape::Hull { points } => Some(points.clone()),
-        // A box with a margin has no contact at its edges; MuJoCo rejects a flat mesh.
+        // The core as a mesh, which MuJoCo requires not to be flat. A `box` with a margin has no contacts at its edges.
         Shape::RoundBox { core, .. } if extended(core).len() > 1 => {
             Some(Shape::Box { half: core.map(|half| half.max(THIN)) }.corners())
         }
@@ -173,7 +173,7 @@ fn mesh_points(shape: &Shape) -> Option<Vec<Point3<f64>>> {
     }
 }
 
-/// Returns the contact margin of a shape, m: the radius if its mesh is only the core, otherwise 0.
+/// Returns the contact margin of a shape, m: the radius if MuJoCo's mesh is only the core, otherwise 0.
 pub(super) fn margin(shape: &Shape) -> f64 {
     let Shape::RoundBox { radius, .. } = shape else { return 0.0 };
     if mesh_points(shape).is_some() { *radius } else { 0.0 }
@@ -191,7 +191,7 @@ pub(super) fn assets(scene: &Scene) -> Element {
     Element::new("asset").with_children(geoms.filter_map(mesh))
 }
 
-/// Returns whether the initial coordinates of a joint are zero.
+/// Returns whether the initial coordinates of a joint are zero, within 1e-9 m and rad.
 pub(super) fn at_zero(scene: &Scene, joint: &Joint) -> bool {
     let pose = |body: BodyId| scene.bodies[body.0].pose;
     let off = (pose(joint.parent) * zero_pose(joint)).inv_mul(&pose(joint.child));

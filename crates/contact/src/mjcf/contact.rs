@@ -1,18 +1,17 @@
 //! Contact pairs: friction, and the compliance of a contact point in MuJoCo's terms.
 //!
-//! MuJoCo solves for the acceleration `a` of a contact point (along its normal, apart) and the
-//! force `f` with `R f = -k x - b v - a`: `x` is the gap, `v` its rate, `R = A (1 - d)/d` with the
-//! impedance `d`, and `A` the inverse mass that MuJoCo assigns to the pair (Todorov 2014, ICRA;
-//! MuJoCo documentation, "Solver parameters"). So a contact is a spring `k/R`, a damper `b/R`, and
-//! a mass `1/R` while the surfaces move against each other. With one `d` for all pairs, as usual,
-//! the same `solref` is a hundred times stiffer on a steel key than on a fingertip. Here the `d`
-//! of every pair makes `R`, and so stiffness and damping, the same, whatever the masses.
+//! MuJoCo solves for the force `f` and the normal acceleration `a` of a contact point (positive if the surfaces
+//! separate) with `R f = -k x - b v - a`: `x` is the gap, `v` its rate, `R = A (1 - d)/d` with the impedance `d`, and
+//! `A` the inverse mass that MuJoCo assigns to the pair (Todorov 2014, ICRA; MuJoCo documentation, "Solver
+//! parameters"). So a contact is a spring `k/R`, a damper `b/R` and an added mass `1/R`. With one `d` for all pairs, as
+//! usual, the same `solref` is a hundred times stiffer on a steel key than on a fingertip. Here the `d` of every pair
+//! makes `R`, and so stiffness and damping, the same, whatever the masses.
 //!
-//! The friction rows have `R/impratio` and a `b` of their own, `b_f`: a sticking point creeps
-//! under a force `F` at `F R/(impratio b_f)`. A sliding point floats: the convex cone lifts it until
-//! `k x = mu b_f v` (the surfaces then touch on and off, with the right force on average), so
-//! `b_f` must be small. With MuJoCo's choice, `b_f = b`, a plug that slides at 100 mm/s with
-//! friction 0.2 would float at 0.055 mm, near a connector's clearance; here at 0.011 mm.
+//! The tangential equations (friction) have `R/impratio` and a `b` of their own, `b_f`: a sticking point creeps under a
+//! force `F` at `F R/(impratio b_f)`. A sliding point floats: the convex friction cone lifts it until `k x = mu b_f v`
+//! (contact is then intermittent, with the right mean force), so `b_f` must be small. With MuJoCo's choice, `b_f = b`,
+//! a plug that slides at 100 mm/s with friction 0.2 would float at 0.055 mm, near a connector's clearance; here at
+//! 0.011 mm.
 
 use super::body::margin;
 use super::{HEAVY, MjcfSettings, geom_names, xml::Element};
@@ -22,12 +21,12 @@ use crate::scene::{
 };
 use nalgebra::{DMatrix, Matrix3, Point3, Vector3, Vector6};
 
-/// Depth over which an impedance may vary, m; here it is constant.
+/// Penetration over which an impedance may vary, m (`width` of `solimp`); here it is constant.
 const WIDTH: f64 = 1e-3;
 /// Smallest and largest impedance in MuJoCo.
 const IMPEDANCES: [f64; 2] = [1e-4, 0.9999];
 
-/// Returns the pairs of geoms that may touch.
+/// Returns the `contact` element with the pairs of geoms that may touch.
 pub(super) fn pairs(scene: &Scene, settings: &MjcfSettings) -> Element {
     let names = geom_names(scene).concat();
     let margins: Vec<_> =
@@ -35,6 +34,7 @@ pub(super) fn pairs(scene: &Scene, settings: &MjcfSettings) -> Element {
     let pair = |pair: GeomPair| {
         let ContactPair { first, second, .. } = scene.contacts[pair.bodies];
         let weight = inverse_weight(scene, first) + inverse_weight(scene, second);
+        // Solves `R = 1/contact_mass` for `d`: `A/R = d/(1 - d)`.
         let share = settings.contact_mass * weight;
         let impedance = (share / (1.0 + share)).clamp(IMPEDANCES[0], IMPEDANCES[1]);
         // MuJoCo divides both by the impedance.
@@ -70,7 +70,7 @@ fn with_friction(pair: Element, Friction { coefficient, torsion }: Friction) -> 
 }
 
 /// Returns the inverse mass that MuJoCo assigns to a body, 1/kg: the mean over the three axes of the inverse mass at
-/// its centre of mass, 0 for an axis that is locked to a parent which is itself the child of a joint.
+/// its centre of mass; 0 along a locked axis of its joint, unless the parent is free and not on a joint itself.
 pub(super) fn inverse_weight(scene: &Scene, body: BodyId) -> f64 {
     let Body { motion, .. } = &scene.bodies[body.0];
     let inertia = match motion {
@@ -104,7 +104,8 @@ fn on_free_body(
     let [above, below] = [joint.parent, joint.child].map(|body| scene.bodies[body.0].pose);
     let at = below * child.centre;
     let frame = above * joint.in_parent;
-    // Columns: linear velocity at the child's centre of mass, and angular, of the parent, then of each free axis.
+    // Columns: velocity at the child's centre of mass and angular velocity, first for those of the parent, then for the
+    // rate of each free axis.
     let free = (0..6).filter(|&i| axes[i].is_some());
     let column = |i: usize| {
         let axis = frame.rotation * Vector3::ith(i % 3, 1.0);

@@ -4,8 +4,8 @@
 //! | scene | MJCF |
 //! | --- | --- |
 //! | fixed body | `mocap` body, so that it can be moved |
-//! | driven body | a heavy body on three slides and three hinges, with position actuators |
-//! | free, carried body | free joint; `gravcomp` if its weight is carried |
+//! | driven body | a heavy body on three slides and three hinges, with position actuators; `gravcomp` |
+//! | free, carried body | free joint, unless it is the child of a joint; `gravcomp` if carried |
 //! | joint | the child inside the parent, a slide or hinge for each axis that is not locked |
 //! | spring, servo | the joint's own stiffness and damping; a `position` actuator with its limit |
 //! | contacts of two bodies | a `pair` for each pair of their geoms, and no others |
@@ -23,11 +23,11 @@ use crate::direct::Direct;
 use crate::scene::{AxialFriction, Body, Joint, Motion, Scene, Spring, Springs};
 use xml::Element;
 
-/// Step and stiffness of the simulation in MuJoCo.
+/// Settings of the simulation in MuJoCo.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct MjcfSettings {
-    /// Length of a step, s: the published one. In MuJoCo a contact begins when the surfaces
-    /// overlap; with twice the step, a light plug under a sudden 70 N penetrates too far (check T10).
+    /// Length of a step, s: that of the published simulation. In MuJoCo a contact begins when the surfaces overlap;
+    /// with twice the step, a light plug under a sudden force of 70 N penetrates too far (check T10).
     pub step_s: f64,
     /// Stiffness of a contact point, N/m: that of the engine `direct`.
     pub contact_stiffness: f64,
@@ -35,17 +35,17 @@ pub struct MjcfSettings {
     pub contact_damping: f64,
     /// Damping of a sticking point, N s/m: that of the engine `direct`.
     pub stick_damping: f64,
-    /// Mass that a contact adds to its bodies, kg: small enough for check T10. With
-    /// less, its damper would be too stiff for a step, beyond about `damping * step / mass = 1`.
+    /// Mass that a contact point adds to its bodies, `1/R` in `contact.rs`, kg: small enough for check T10. With less,
+    /// the contact's damper would be too stiff for a step, beyond about `damping * step / mass = 1`.
     pub contact_mass: f64,
-    /// Rate at which the friction of plug and socket stops a sticking point, 1/s. A higher rate increases the
-    /// height at which a sliding point floats (see `contact.rs`, check T12); with a lower one, more of the
-    /// penetration of the contact appears as sliding (T10).
+    /// Rate at which the tangential velocity of a sticking point decays, `b_f` in `contact.rs`, 1/s. With a higher rate
+    /// a sliding point floats higher (check T12); with a lower one, more of the penetration of the contact appears as
+    /// sliding (T10).
     pub friction_rate: f64,
-    /// Tolerance of MuJoCo's solver.
+    /// Tolerance of MuJoCo's solver, dimensionless.
     pub tolerance: f64,
-    /// Whether two meshes may touch at several points. At a rim their normals are wrong; without this
-    /// option, the face of a mesh is supported at one point only.
+    /// MuJoCo's `multiccd`: whether two meshes may touch at several points. At a rim the normals of these points are
+    /// wrong; without this option, the face of a mesh is supported at one point only.
     pub multiccd: bool,
 }
 
@@ -65,16 +65,16 @@ impl Default for MjcfSettings {
     }
 }
 
-/// Mass and moments of inertia of a driven body, kg, kg m2: in 50 us 100 N move it by 0.25 nm.
+/// Mass and moments of inertia of a driven body, kg, kg m2: in a step of 50 us a force of 100 N moves it by 0.25 nm.
 pub const HEAVY: f64 = 1000.0;
 /// Natural frequency, 1/s, at which a driven body follows its actuators in MuJoCo's viewer.
 const VIEWER_FREQUENCY: f64 = 100.0;
 
-/// Feature of a scene that MJCF lacks.
+/// Error of a scene that needs a feature that MJCF lacks.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("`{part}` cannot be written as MJCF, which does not support {feature}")]
 pub struct NotMjcf {
-    /// Body or joint of the scene.
+    /// Name of the body or joint.
     pub part: String,
     /// Missing feature.
     pub feature: &'static str,
@@ -120,7 +120,7 @@ pub fn write(scene: &Scene, name: &str, settings: &MjcfSettings) -> Result<Strin
         // Springs and dampers are solved for together with the contacts.
         .with("integrator", "discrete")
         .with("cone", "elliptic")
-        // Ratio of the resistance of sticking friction to that along the normal, for all pairs.
+        // Ratio of frictional to normal constraint impedance, for all pairs.
         .with("impratio", settings.stick_damping / (settings.friction_rate * settings.contact_mass))
         .with("solver", "Newton")
         .with("tolerance", settings.tolerance)
@@ -148,13 +148,13 @@ pub fn write(scene: &Scene, name: &str, settings: &MjcfSettings) -> Result<Strin
 pub(crate) const MATING_FORCE: &str = "mating force";
 /// Name of the other end of that tendon.
 const ANCHOR: &str = "anchor of the mating force";
-/// Distance of that end below the socket's origin, m: a lateral offset of 1 mm inclines the tendon by 0.1 mrad.
+/// Distance of the anchor below the socket's origin, m: a lateral offset of 1 mm inclines the tendon by 0.1 mrad.
 const FAR: f64 = 10.0;
-/// Impedance of sticking friction: the largest that MuJoCo accepts.
+/// Constraint impedance of the axial friction: the largest that MuJoCo accepts.
 const STICKING: f64 = 0.9999;
 
-/// Returns the tendon of a friction along an axis and, as custom numbers, its largest force by depth: MJCF has no
-/// friction that varies, so `frictionloss` has to be set in each step.
+/// Returns the tendon of an axial friction and, as custom numbers, depths, m, with the largest force there, N: MJCF has
+/// no friction that depends on position, so `frictionloss` has to be set in each step.
 fn tendon(along: &AxialFriction, step_s: f64) -> [Element; 2] {
     let site = |name| Element::new("site").with("site", name);
     let spatial = Element::new("spatial")
@@ -180,7 +180,7 @@ fn actuators(scene: &Scene) -> Element {
     let stiffness = HEAVY * VIEWER_FREQUENCY * VIEWER_FREQUENCY;
     let damping = 2.0 * HEAVY * VIEWER_FREQUENCY;
     let follows = Spring::new(stiffness, damping);
-    // As far as the sliders of a viewer reach: 0.1 m, 0.5 rad.
+    // The limits, 0.1 m and 0.5 rad, are those of the sliders in a viewer.
     let command =
         |body, i| actuator(&driven_axis_name(body, i), &follows, if i < 3 { 0.1 } else { 0.5 });
     let commands = driven.flat_map(|body| (0..6).map(move |axis| command(body, axis)));
@@ -205,6 +205,7 @@ pub(crate) fn servo(joint: &Joint, axis: usize) -> Option<&Spring> {
     axes[axis].as_ref().filter(|spring| spring.limit.is_finite())
 }
 
+/// Names of the axes of a joint, in the order of [`Springs::Axes`].
 const AXES: [&str; 6] = ["x", "y", "z", "rx", "ry", "rz"];
 
 /// Returns the name of an axis of a joint, and of its servo.

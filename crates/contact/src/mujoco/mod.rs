@@ -1,7 +1,7 @@
 //! A second, independent engine: MuJoCo, confined to this module.
 //!
-//! MuJoCo reads the scene as MJCF ([`crate::mjcf`]). During a trial, numbers of the model are changed:
-//! the force on a driven body before each step, the gains of a servo when its spring is replaced.
+//! MuJoCo reads the scene as MJCF ([`crate::mjcf`]). During a simulation, values of the model are changed: the force on
+//! a driven body before each step, the gains of a servo when its spring is replaced.
 
 // `world` returns no error: it panics with MuJoCo's message on a scene that `supports` would reject.
 #![allow(clippy::panic)]
@@ -17,7 +17,7 @@ use world::MujocoWorld;
 /// The engine `mujoco`.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Mujoco {
-    /// Step and stiffness of the simulation.
+    /// Settings of the simulation.
     pub settings: MjcfSettings,
 }
 
@@ -54,7 +54,7 @@ impl Engine for Mujoco {
     }
 
     /// # Panics
-    /// On a scene that it does not support.
+    /// If it does not support the scene.
     fn world(&self, scene: &Scene) -> Box<dyn World> {
         let model = self.model(scene).unwrap_or_else(|error| panic!("{error}"));
         Box::new(MujocoWorld::new(scene, model))

@@ -28,14 +28,14 @@ pub(super) struct MujocoWorld {
     axial_friction: Option<MatingForce>,
 }
 
-/// Axial friction, modelled as the friction of a tendon.
+/// Axial friction ([`AxialFriction`]), simulated as the friction of a tendon.
 #[derive(Clone)]
 struct MatingForce {
     along: AxialFriction,
     tendon: usize,
     /// Index of the first component of the child's linear velocity.
     velocity: usize,
-    /// Sign of each pair: 1 if its force acts on the child or a body attached to the child, -1 if its reaction does.
+    /// Sign with which the force of each pair acts on the child and the bodies attached to it; 0 if it does not.
     signs: Vec<f64>,
 }
 
@@ -68,9 +68,9 @@ struct Servo {
 
 impl MujocoWorld {
     pub fn new(scene: &Scene, mut model: MjModel) -> Self {
-        // The ranges of the sliders are for the viewer.
+        // The control limits are the ranges of the viewer's sliders.
         model.actuator_ctrllimited_mut().fill(false);
-        // So are the actuators of the driven bodies, which follow commands here.
+        // The position control of driven bodies is for the viewer, too; see `push_driven`.
         for body in scene.bodies.iter().filter(|body| body.motion == Motion::Driven) {
             for axis in 0..6 {
                 let name = driven_axis_name(body, axis);
@@ -114,8 +114,8 @@ impl MujocoWorld {
         }
     }
 
-    /// Adds the friction along an axis, which constrains the child in addition to the contacts of the child and of the
-    /// bodies attached to it.
+    /// Adds the axial friction to the forces of its pair: the constraint force of the child less the contact forces on
+    /// the child and on the bodies attached to it.
     fn add_axial_friction(&mut self) {
         let Some(MatingForce { along, tendon, velocity, signs }) = &self.axial_friction else {
             return;
@@ -197,7 +197,7 @@ impl World for MujocoWorld {
         self.sum_forces();
         self.add_axial_friction();
         self.place_driven();
-        // MuJoCo's step leaves the poses of its start.
+        // After a step, MuJoCo's poses are those at its start.
         self.data.kinematics();
         if self.is_finite() { Ok(()) } else { Err(Diverged) }
     }

@@ -7,28 +7,27 @@ use super::{Engine, Unsupported, World, unsupported_parts};
 use crate::scene::Scene;
 use world::RapierWorld;
 
-/// The engine `rapier` and its settings, for parts of a few millimetres. rapier's defaults are
-/// for games with parts of metres, and are wrong here (a push of 10 N penetrates by 0.7 mm).
+/// The engine `rapier` and its settings, for parts of a few millimetres. rapier's defaults are made for games with
+/// parts of about 1 m; with them, 10 N cause a penetration of 0.7 mm.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Rapier {
     /// Length of a step, s; collisions are detected once per step.
     pub step_s: f64,
     /// Number of solver substeps in a step.
     pub substeps: usize,
-    /// Natural frequency of a contact, Hz. rapier scales a contact's stiffness with the effective
-    /// mass: a 5 g connector wedged by 70 N sinks 0.21 mm into a wall at 2 kHz, 0.024 mm at 6 kHz,
-    /// 0.014 mm at 8 kHz (check T10). But a contact that is too stiff for the length of a substep,
-    /// beyond about `2 pi f h = 1.7`, chatters when a part is squeezed between two others, and so
-    /// lets it slip: at 4 substeps of 25 us from 12 kHz (check T5).
+    /// Natural frequency f of a contact, Hz. rapier scales a contact's stiffness with the effective mass: a 5 g
+    /// connector wedged by 70 N penetrates a wall by 0.21 mm at 2 kHz, 0.024 mm at 6 kHz, 0.014 mm at 8 kHz (check
+    /// T10). But a contact that is too stiff for the length h of a substep, beyond about `2 pi f h = 1.7`, chatters
+    /// when a part is squeezed between two others, and the part slips: with substeps of 25 us from 12 kHz (check T5).
     pub contact_hz: f64,
     /// Damping ratio of a contact; 1 is critical.
     pub contact_damping_ratio: f64,
-    /// Distance at which a contact is predicted, m: farther than anything moves in a step, smaller
-    /// than the gaps between faces that must not interact.
+    /// Gap below which a contact is predicted, m: larger than any displacement in a step, smaller than the gaps between
+    /// faces that must not interact.
     pub prediction: f64,
-    /// Highest speed at which a penetration is pushed out, m/s. This bounds the force that a
-    /// contact can bear: at 0.5 m/s a 5 g connector wedged by 70 N sinks 2.4 mm at 2 kHz, and one
-    /// wedged by 200 N sinks 1.1 mm at 8 kHz (check T10). The default bears about 3 kN on such a part.
+    /// Highest speed at which a penetration is corrected, m/s. It bounds the force of a contact: at 0.5 m/s a 5 g
+    /// connector wedged by 70 N penetrates by 2.4 mm at 2 kHz, and one wedged by 200 N by 1.1 mm at 8 kHz (check T10).
+    /// With the default the bound is about 3 kN on such a part.
     pub corrective_velocity: f64,
     /// Penetration that is not corrected, m.
     pub allowed_error: f64,
@@ -63,7 +62,7 @@ impl Engine for Rapier {
     }
 
     /// # Panics
-    /// On a scene that it does not support.
+    /// If it does not support the scene.
     #[allow(clippy::panic)]
     fn world(&self, scene: &Scene) -> Box<dyn World> {
         if let Err(unsupported) = self.supports(scene) {

@@ -11,10 +11,10 @@ use rapier3d_f64::prelude as rp;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// Units of length in a metre: parry reuses the points and the normal of two shapes until they have slid by
-/// 0.001 units, which in metres is as large as the radius of an edge. Masses and times are in SI units.
+/// Number of rapier's units of length, millimetres, in a metre: parry reuses the contact points and the normal of two
+/// shapes until they have slid by 0.001 units, in metres the radius of an edge. Masses and times are in SI units.
 const LENGTH: f64 = 1e3;
-/// Units of a moment, and of a moment of inertia, in the SI unit.
+/// Factor from SI units to rapier's for moments and moments of inertia.
 const MOMENT: f64 = LENGTH * LENGTH;
 
 /// Simulation of a scene in rapier.
@@ -26,7 +26,8 @@ pub(super) struct RapierWorld {
     axial_friction: Option<(AxialFriction, rp::ImpulseJointHandle)>,
 }
 
-/// Coefficient of friction of each pair of colliders, by the numbers in their user data.
+/// Coefficient of friction of each pair of colliders, by their numbers in the scene (geoms in order), which are their
+/// user data.
 struct Frictions(BTreeMap<[usize; 2], f64>);
 
 impl rp::PhysicsHooks for Frictions {
@@ -64,7 +65,7 @@ impl RapierWorld {
         RapierWorld { world, bodies, joints, frictions, axial_friction }
     }
 
-    /// Sets the limit of the axial friction at the present poses.
+    /// Sets the limit of the axial friction for the current poses.
     fn update_axial_friction(&mut self) {
         let Some((along, joint)) = &self.axial_friction else { return };
         let limit = along.limit(&self.pose(along.parent), &self.pose(along.child));
@@ -74,7 +75,7 @@ impl RapierWorld {
         }
     }
 
-    /// Returns the friction along an axis over the last substep on the second of two bodies, N.
+    /// Returns the axial friction over the last substep on the second of two bodies, world axes, N.
     fn axial_friction(&self, first: BodyId, second: BodyId) -> Option<Vector3<f64>> {
         let (along, joint) = self.axial_friction.as_ref()?;
         let sign = sign((along.parent, along.child), (first, second))?;
@@ -139,7 +140,7 @@ impl World for RapierWorld {
             // The manifold's normal points from its first body to its second.
             let bodies = manifold.data.rigid_body1.zip(manifold.data.rigid_body2);
             let Some(sign) = bodies.and_then(|bodies| sign(ends, bodies)) else { continue };
-            // A point that is not active keeps the impulse of the last step in which it was.
+            // An inactive point keeps the impulse of the last step in which it was active.
             let active = || {
                 let solved = manifold.data.solver_contacts.iter();
                 solved.map(|contact| &manifold.points[contact.contact_indices()[0] as usize].data)
@@ -191,12 +192,12 @@ fn parameters(settings: &Rapier) -> rp::IntegrationParameters {
         normalized_prediction_distance: settings.prediction * LENGTH,
         normalized_max_corrective_velocity: settings.corrective_velocity * LENGTH,
         normalized_allowed_linear_error: settings.allowed_error * LENGTH,
-        // Recycled contacts let a block slide 34 mm past an edge before it drops.
+        // With recycling, a block slides 34 mm past an edge before it drops.
         contact_recycling: false,
         contact_clustering: false,
         max_ccd_substeps: 0,
         warmstart_joints: true,
-        // `Coulomb` lost 2.8 % of friction on a rotating four-point face.
+        // With `Coulomb`, 2.8 % of the friction of a rotating face with four contact points is missing.
         friction_model: rp::FrictionModel::Simplified,
         ..Default::default()
     }

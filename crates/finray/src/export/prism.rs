@@ -1,4 +1,4 @@
-//! A profile extruded along its depth: a closed surface of triangles, as STL and 3MF files.
+//! A profile extruded along the finger's depth: a closed surface of triangles, as STL and 3MF files.
 
 use super::rings;
 use crate::geometry::Geometry;
@@ -13,7 +13,7 @@ use zip::CompressionMethod;
 use zip::result::ZipResult;
 use zip::write::{SimpleFileOptions, ZipWriter};
 
-/// Closed surface; its corners are rounded as in files, so that the checks apply to the files.
+/// Closed surface, with coordinates in the precision of the files, so that the checks apply to the files.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Prism {
     /// Corners, mm.
@@ -27,7 +27,7 @@ pub struct Prism {
 #[error("{0}")]
 pub struct PrismError(pub(super) String);
 
-/// Share by which a volume may differ from area times depth.
+/// Largest relative difference between the volume and area times depth.
 const VOLUME_TOLERANCE: f64 = 1e-3;
 /// Length of the header of an STL file, bytes.
 const HEADER: usize = 80;
@@ -101,7 +101,7 @@ impl Prism {
         self.merged(&block).closed()
     }
 
-    /// Extrudes a ring minus its holes (clockwise) from 0 to `depth`, mm.
+    /// Extrudes an outer ring with holes (clockwise rings) from 0 to `depth`, mm.
     fn new(outer: &Ring, holes: &[Ring], depth: f64) -> Result<Self, PrismError> {
         let mesh = Mesh::coarsest(outer, holes).map_err(|error| {
             PrismError(format!("the profile cannot be divided into triangles: {error}"))
@@ -134,8 +134,8 @@ impl Prism {
         Ok(prism)
     }
 
-    /// Returns the surface if each edge belongs to two triangles, once in each direction. Corners are identified by
-    /// their positions, as in an STL file, which does not number them.
+    /// Returns the surface if it is closed: each edge belongs to two triangles, once in each direction. Corners are
+    /// identified by their positions, as in an STL file, which does not number them.
     fn closed(self) -> Result<Self, PrismError> {
         let place = |corner: u32| self.corners[corner as usize].map(f32::to_bits);
         let mut counts: BTreeMap<[[u32; 3]; 2], i32> = BTreeMap::new();
@@ -198,8 +198,8 @@ impl Prism {
     }
 }
 
-/// Returns a 3MF file, mm, with `more` text files (name, content). Several surfaces are components, numbered from 1, of
-/// one object, which follows them.
+/// Returns a 3MF file, mm, with `more` text files (name, content). Several surfaces are the components 1, 2, ... of an
+/// object with the next id.
 pub(super) fn three_mf(parts: &[&Prism], title: &str, more: &[(&str, &str)]) -> ZipResult<Vec<u8>> {
     let mut zip = ZipWriter::new(Cursor::new(Vec::new()));
     let files = [
@@ -216,7 +216,7 @@ pub(super) fn three_mf(parts: &[&Prism], title: &str, more: &[(&str, &str)]) -> 
     Ok(zip.finish()?.into_inner())
 }
 
-/// Returns the id of the object that consists of a number of surfaces.
+/// Returns the id of the object in [`three_mf`] that contains all surfaces, given their number.
 pub(super) fn object_id(parts: usize) -> usize {
     if parts == 1 { 1 } else { parts + 1 }
 }

@@ -20,14 +20,16 @@ const ROOM: [f64; 2] = [215.0, 80.0];
 /// Left and upper edge of the drawing, mm on paper.
 const CORNER: [f64; 2] = [38.0, 58.0];
 
-/// Data of a sheet beside the geometry: origin, and stiffness at the pad, across and along it.
+/// Data of a sheet that the geometry does not contain: origin of the design, and stiffness at the pad, across it (y)
+/// and along it (z).
 #[derive(Debug, Clone, Copy)]
 pub struct SheetData<'a> {
-    /// Origin of the finger: `for usb, study usb-gp-seed0`; empty if it was given by its infill.
+    /// Origin of the design, for example `for usb, study usb-gp-seed0`; empty if density and direction were given.
     pub origin: &'a str,
     /// Stiffness computed from the ribs.
     pub ribs: &'a FingerStiffness,
-    /// Mean and standard deviation across and along the pad by the model of measured fingers, N/m, if there is one.
+    /// Mean and standard deviation of the stiffness across, then along the pad, N/m, predicted from measured fingers,
+    /// if there are any.
     pub measured: Option<[[f64; 2]; 2]>,
 }
 
@@ -90,16 +92,16 @@ fn draw_finger(drawing: &mut Drawing, geometry: &Geometry, view: View) {
     draw_directions(drawing, geometry, view);
 }
 
-/// Returns the length of the block beyond a finger and its width beside it, on either side, mm.
+/// Returns how far the block extends beyond the end of a finger, and beyond each of its sides, mm; 0 without a block.
 fn block(geometry: &Geometry) -> [f64; 2] {
     let wing = |width: f64| ((width - geometry.finger.outline.width) / 2.0).max(0.0);
     geometry.block().map_or([0.0; 2], |(_, block)| [block.length / MM, wing(block.width) / MM])
 }
 
-/// Label of the held part.
+/// Label of the clamped part of the base.
 const HELD: &str = "held by the gripper";
 
-/// Draws the profile, the part of it that the gripper holds, and the block with its holes as hidden edges.
+/// Draws the profile, the clamped part of the base, and the block, with its holes as hidden edges.
 fn draw_shape(drawing: &mut Drawing, geometry: &Geometry, view: View) {
     let outline = &geometry.finger.outline;
     let rectangle = |drawing: &mut Drawing, along: [f64; 2], across: [f64; 2], radius, style| {
@@ -170,6 +172,7 @@ fn draw_directions(drawing: &mut Drawing, geometry: &Geometry, view: View) {
     let style = Style::line("#c60", 0.4);
     drawing.line([foot, foot + up(0.0) * reach], style.dashed());
     drawing.line([foot, foot + up(design) * reach], style);
+    // Below 8 degrees the label of 0 degrees would overlap that of the design.
     let named = [(0.0, design == 0.0 || design.abs() > 8.0), (design, design != 0.0)];
     for (angle, _) in named.into_iter().filter(|(_, named)| *named) {
         let font = Font::new(4.0).colour("#a40").middle();
@@ -225,7 +228,8 @@ fn print_rows(geometry: &Geometry) -> Vec<(&'static str, String)> {
     ]
 }
 
-/// Standard deviation of the measured from the computed stiffness of the eleven shipped fingers, as a share.
+/// Standard deviation of the difference between measured and computed stiffness of the eleven published fingers,
+/// relative to the computed stiffness.
 const SCATTER: f64 = 0.175;
 
 fn check_rows(geometry: &Geometry, data: &SheetData) -> Vec<(&'static str, String)> {
@@ -242,7 +246,7 @@ fn check_rows(geometry: &Geometry, data: &SheetData) -> Vec<(&'static str, Strin
     let [model_across, model_along] = measured.map_or([none(), none()], |found| found.map(of));
     let without = if geometry.block().is_some() { " without the block" } else { "" };
     let modulus = geometry.finger.material.modulus / 1e9;
-    // The expected stiffness of the print is the stiffness in the simulated trials.
+    // The print is checked against the stiffness that the simulation uses.
     let (mean, sd, by) = match *measured {
         Some([[mean, sd], _]) => (mean, sd, "± 2 sd"),
         None => (ribs[0], SCATTER * ribs[0], "from the ribs ± 2 sd"),

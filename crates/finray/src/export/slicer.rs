@@ -1,9 +1,8 @@
-//! Settings for slicers that fill the outline with ribs themselves, as the published fingers were
-//! sliced: parallel lines in one direction, their ends not connected, walls alone around them, no
-//! top and no bottom.
+//! Settings for slicers that fill the outline with ribs themselves, as the published fingers were sliced: parallel
+//! lines in one direction, with unconnected ends, surrounded by walls, without top and bottom layers.
 //!
-//! The density of a slicer differs from that of the design, since its pitch follows from its own line width. So
-//! the settings define the pitch. The slicer determines the position of the first rib.
+//! A slicer derives the pitch of its lines from its density and its own line width, so its density differs from that of
+//! the design: the settings reproduce the design's pitch. The slicer chooses the position of the first rib.
 
 use super::prism::{self, DECLARATION, Prism, PrismError};
 use super::{mm, title};
@@ -13,7 +12,7 @@ use input::units::MM;
 use maud::{Markup, html};
 use std::f64::consts::PI;
 
-/// Height of a layer, mm: half the line width of the published fingers, a usual choice.
+/// Height of a layer, mm: as usual, half the line width, 0.4 mm in the published fingers.
 pub(super) const LAYER: f64 = 0.2;
 /// Version of the settings of Cura 5.0; later versions accept them.
 const CURA_SETTING_VERSION: &str = "20";
@@ -77,7 +76,7 @@ fn settings(geometry: &Geometry) -> Vec<(&'static str, &'static str, String)> {
     // semicircles as high as a layer) divided by the pitch.
     let touching = geometry.finger.line_width / MM - LAYER * (1.0 - PI / 4.0);
     let density = touching / (geometry.lines.pitch / MM) * 100.0;
-    // Slicers count from X, counter-clockwise; the design from Y, clockwise.
+    // Slicers measure the angle from X, counter-clockwise; the design from Y, clockwise.
     let angle = (90.0 - geometry.design.direction_deg).rem_euclid(180.0);
     let [off, on] = ["0", "1"].map(|text| move || text.to_owned());
     vec![
@@ -139,10 +138,10 @@ pub fn prusaslicer_project(geometry: &Geometry) -> Result<Vec<u8>, PrismError> {
     project(&[&outline.merged(&base)], geometry, "Metadata/Slic3r_PE_model.config", &config)
 }
 
-/// Returns a 3MF file with outline and solid base and their settings for OrcaSlicer and Bambu Studio, which are
-/// read when it is opened as a project. Both read volumes as components of an object, which PrusaSlicer splits
-/// into separate objects: hence a file of its own. Structure and keys follow the sources of OrcaSlicer 2.3 and
-/// Bambu Studio 2.6 (`libslic3r/Format/bbs_3mf.cpp`, `PrintConfig.cpp`).
+/// Returns a 3MF file with outline and solid base and their settings for OrcaSlicer and Bambu Studio, which are read
+/// when it is opened as a project. Both programs require volumes to be components of an object, which PrusaSlicer would
+/// split into separate objects. Structure and keys follow the sources of OrcaSlicer 2.3 and Bambu Studio 2.6
+/// (`libslic3r/Format/bbs_3mf.cpp`, `PrintConfig.cpp`).
 ///
 /// # Errors
 /// See [`prusaslicer_project`].
@@ -180,8 +179,8 @@ fn project(
     zip.map_err(|error| PrismError(error.to_string()))
 }
 
-/// Returns the number and width, m, of the walls that form the skin: the smallest number of walls at most two lines
-/// wide.
+/// Returns the number and the width, m, of the walls that form the skin: as few walls as possible, each at most two
+/// line widths wide.
 fn walls(finger: &PrintedFinger) -> (u32, f64) {
     let count = (finger.skin / (2.0 * finger.line_width) - 1e-9).ceil().max(1.0);
     (count as u32, finger.skin / count)

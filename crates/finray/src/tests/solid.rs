@@ -1,4 +1,4 @@
-//! Across the plane: the plate against elasticity in three dimensions.
+//! Loads out of the plane: the plate against elasticity in three dimensions.
 //!
 //! The solid is the profile's mesh, extruded; through the depth its displacements are
 //! polynomials in the distance z from the middle plane: odd in X and Y, even in Z. Mindlin's
@@ -98,8 +98,8 @@ impl Element for Solid {
     }
 }
 
-/// The plate is as stiff as the solid. Pushed across, a finger bends about its base, which lies
-/// above the pad: the pad turns so that its lower end goes farther.
+/// The plate is as stiff as the solid. Pushed out of the plane, a finger bends about its base, which lies above the
+/// pad: the pad turns so that its lower end is displaced farther.
 #[test]
 fn the_plate_is_as_stiff_as_the_solid_and_turns_like_a_cantilever() {
     for (density, direction) in [(10.0, 0.0), (20.0, 20.0), (25.0, 40.0)] {

@@ -1,5 +1,5 @@
-//! Neighbour lists (Verlet 1967, Phys. Rev. 159:98): the pairs of shapes of two bodies that may touch before
-//! the bodies have moved by a margin relative to one another. Only these are tested in a step.
+//! Neighbour lists (Verlet 1967, Phys. Rev. 159:98): the geom pairs of two bodies that may touch while the relative
+//! displacement of the bodies is below a margin. Only these pairs are tested in a step.
 
 use super::super::body::MovingBody;
 use super::{Candidate, Solid, has_stayed};
@@ -15,56 +15,58 @@ use std::sync::Arc;
 /// Relative displacement of two bodies up to which their near pairs are valid, m.
 const MARGIN: f64 = 0.5e-3;
 
-/// Relative displacement up to which the close pairs of a long list are valid, m.
+/// Relative displacement of two bodies up to which their close pairs ([`NearList::close`]) are valid, m.
 const CLOSE: f64 = 0.12e-3;
 
-/// Pair of shapes that may touch.
+/// Pair of geoms that may touch.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct NearPair {
-    /// Number of the pair, counted over all pairs of shapes of the scene.
+    /// Number of the geom pair, counted over all body pairs of the scene.
     pub number: usize,
-    /// Shapes of the first and the second body.
+    /// Indices of the geoms of the first and the second body in `Detector::solids`.
     pub solids: [usize; 2],
 }
 
-/// Pairs of shapes of two bodies.
+/// Geom pairs of two bodies.
 #[derive(Clone)]
 pub(super) struct NearList {
     pub bodies: ContactPair,
-    /// Pairs that may touch.
+    /// Pairs that may touch until the bodies have moved by [`MARGIN`].
     pub near: Vec<NearPair>,
-    /// Closest of the near pairs, the only ones tested in a step if there are many.
+    /// Near pairs that may touch within the next steps; the only ones tested if two bodies have many geom pairs.
     pub close: Vec<NearPair>,
-    /// Shapes of the near pairs, ascending.
+    /// Indices of the geoms of the near pairs, ascending.
     pub solids: Vec<usize>,
     /// All pairs that have been near, by their numbers, with their contact points.
     pub candidates: BTreeMap<usize, Candidate>,
-    /// Number of the pair of bodies in the scene.
+    /// Index of the body pair in the scene's contacts.
     number: usize,
-    /// Number of the first pair of shapes.
+    /// Number of the first geom pair.
     from: usize,
+    /// Indices of the geoms of each body.
     first: Range<usize>,
     second: Range<usize>,
-    /// Bounding volume hierarchy of the first body's shapes in its frame.
+    /// Bounding volume hierarchy of the first body's geoms in the body frame.
     tree: Arc<Bvh>,
-    /// Largest distance of a point of the second body's shapes from its origin, m.
+    /// Largest distance of a point of the second body from the origin of the body frame, m.
     reach: f64,
     /// Pose of the second body in the frame of the first for which the near pairs were determined.
     made_at: Option<Pose>,
     /// Pose of the second body in the frame of the first for which the close pairs were selected.
     chosen_at: Option<Pose>,
-    /// Largest gap of the close pairs, m.
+    /// Prediction distance for which the close pairs were selected, m.
     chosen_for: f64,
 }
 
-/// Builds the bounding volume hierarchy of a body's shapes in its frame.
+/// Builds the bounding volume hierarchy of a body's geoms in the body frame.
 pub(super) fn tree(solids: &[Solid]) -> Bvh {
     let boxes: Vec<_> = solids.iter().map(|solid| solid.aabb).collect();
     Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes)
 }
 
 impl NearList {
-    /// Creates the list of the pair of bodies with this number in the scene; its first pair of shapes is number `from`.
+    /// Creates the list of a body pair, given with its index in the scene's contacts. `from` is the number of its first
+    /// geom pair; the third argument contains the geom indices and the hierarchy of each body.
     pub fn new(
         (number, bodies): (usize, &ContactPair),
         from: usize,
@@ -90,12 +92,13 @@ impl NearList {
         }
     }
 
-    /// Returns the number of pairs of shapes.
+    /// Returns the number of geom pairs.
     pub fn pairs(&self) -> usize {
         self.first.len() * self.second.len()
     }
 
-    /// Returns an upper bound of the speed of any point of the second body relative to the first, m/s.
+    /// Returns an upper bound of the speed of any point of the second body relative to the first, m/s; approximate if
+    /// the second body's centre of mass is not the origin of its frame.
     pub fn speed(&self, bodies: &[MovingBody]) -> f64 {
         let [first, second] = [self.bodies.first, self.bodies.second].map(|body| &bodies[body.0]);
         let own = first.velocity - second.velocity;
@@ -105,7 +108,8 @@ impl NearList {
         linear + turned + angular * self.reach
     }
 
-    /// Renews the near pairs if the bodies have moved; `relative` is the pose of the second in the frame of the first.
+    /// Determines the near pairs again if the bodies have moved by [`MARGIN`]; `relative` is the pose of the second in
+    /// the frame of the first.
     pub fn renew(&mut self, relative: &Pose, solids: &[Solid], prediction: f64) {
         if has_stayed(self.made_at.as_ref(), relative, self.reach, MARGIN) {
             return;
@@ -138,18 +142,19 @@ impl NearList {
         }
     }
 
-    /// Selects the close pairs, which may touch in the next steps, by the current bounding boxes of the shapes.
+    /// Selects the close pairs again, by the current bounding boxes of the geoms, if the bodies have moved by [`CLOSE`]
+    /// or the prediction distance has increased.
     pub fn choose(&mut self, relative: &Pose, solids: &[Solid], prediction: f64) {
         let stayed = has_stayed(self.chosen_at.as_ref(), relative, self.reach, CLOSE);
         if stayed && prediction <= self.chosen_for {
             return;
         }
-        // With a margin, so that not every increase of the speed requires a new selection.
+        // With a margin, since the prediction distance increases with the speed.
         (self.chosen_at, self.chosen_for) = (Some(*relative), 1.5 * prediction);
         let first = self.solids.first().copied().unwrap_or(0);
         let count = self.solids.last().map_or(0, |last| last + 1 - first);
         let mut dense = vec![Aabb::new_invalid(); count];
-        // Copied so that they are contiguous in memory: a shape has many other fields.
+        // Copied so that they are contiguous in memory: a solid has many other fields.
         self.solids.iter().for_each(|&i| dense[i - first] = solids[i].aabb);
         let margin = self.chosen_for + CLOSE;
         self.close.clear();

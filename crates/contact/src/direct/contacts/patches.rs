@@ -1,29 +1,30 @@
-//! Flat patches: the contact points of two bodies that lie in one plane, whichever shapes they belong to.
-//! Each patch is reduced to its extreme points, so that stiffness and friction do not depend on the
-//! number of facets: every corner of a patch has the stiffness of a point, a face that of four points, an edge
-//! that of two.
+//! Contact patches: the contact points of two bodies that lie in one plane, whichever geoms they belong to. Each patch
+//! is reduced to its extreme points, the corners, so that stiffness and friction do not depend on the number of facets:
+//! a face has the stiffness of four contact points, an edge that of two.
 
 use super::Touch;
 use nalgebra::{Matrix3, Vector3};
 
 /// Largest number of points of a patch.
 pub(super) const MAX_POINTS: usize = 4;
-/// Cosine of the largest angle between the normals of a patch, 2.5 degrees.
+/// Cosine of the largest angle between the normals of a patch: 2.6 degrees.
 const ALIKE: f64 = 0.999;
-/// Largest distance of a point from the plane of a patch, as a share of its distance from the patch's first point.
+/// Largest distance of a point from the plane of a patch, divided by its distance from the patch's first point.
 const TILT: f64 = 0.05;
-/// Largest deviation of the gap from a linear function over the patch, m: as large as the penetration of a contact.
+/// Largest deviation of the gap from a linear function over the patch, m: the penetration of a contact point by default
+/// under 2.75 N.
 const FLAT: f64 = 5e-6;
 /// Gaps that differ by less are equal, m.
 const EQUAL: f64 = 2e-6;
-/// Distance of points from one another, or from the line between two others, below which they are merged, m: a
-/// rounded edge and the adjacent face touch a wall side by side.
+/// Distance of points from one another, or of a point from the line through two others, below which they are merged, m:
+/// a rounded edge and the face beside it touch a wall at neighbouring points.
 pub(super) const NARROW: f64 = 0.1e-3;
 
-/// Joins the manifolds of each patch and reduces the patch to its extreme points.
+/// Joins the manifolds (contact points of one geom pair) that form a patch, and reduces the patch to its extreme
+/// points.
 pub(super) fn join(touches: &mut Vec<Touch>) {
     let manifolds: Vec<_> = touches.chunk_by(|a, b| a.geoms == b.geoms).collect();
-    // Contiguous in memory, since the comparison of normals decides most pairs.
+    // Contiguous in memory: most pairs are already excluded by their normals.
     let mut normals: Vec<Vector3<f64>> =
         manifolds.iter().map(|touches| touches[0].normal).collect();
     let alike = |i: usize, j: usize| {
@@ -68,7 +69,8 @@ struct PatchBuilder {
     fit: LinearFit,
 }
 
-/// Sums over touches for a linear fit of the gap; positions are relative to the first touch.
+/// Sums for a linear fit of the gap g, m, by the position p relative to the first touch, m: number of touches, p, g, p
+/// p^T, p g.
 #[derive(Clone, Copy, Default)]
 struct Sums {
     count: f64,
@@ -76,11 +78,11 @@ struct Sums {
     gap: f64,
     squares: Matrix3<f64>,
     product: Vector3<f64>,
-    /// Largest distance from the first touch.
+    /// Largest distance from the first touch, m.
     reach: f64,
 }
 
-/// Linear fit of the gap over the position relative to the first touch, and its largest error.
+/// Linear fit of the gap by the position relative to the first touch, and an upper bound of its error, m.
 #[derive(Clone, Copy)]
 struct LinearFit {
     intercept: f64,
@@ -107,7 +109,7 @@ impl Sums {
     fn fit(&self) -> Option<LinearFit> {
         let (place, mean) = (self.place / self.count, self.gap / self.count);
         let spread = self.squares - place * self.place.transpose();
-        // Regularized: no slope across touches on one line, or perpendicular to the plane.
+        // Regularized: the slope is 0 in directions in which the touches do not extend.
         let least = Matrix3::from_diagonal_element(1e-6 * spread.trace() + NARROW * FLAT);
         let slope = (spread + least).try_inverse()? * (self.product - place * self.gap);
         Some(LinearFit { intercept: mean - slope.dot(&place), slope, error: f64::INFINITY })
@@ -115,7 +117,7 @@ impl Sums {
 }
 
 impl LinearFit {
-    /// Returns the largest error of the fit at these touches.
+    /// Returns the largest error of the fit at these touches, m.
     fn error_at(&self, first: &Touch, touches: &[Touch]) -> f64 {
         let error = |touch: &Touch| {
             (touch.gap - self.intercept - self.slope.dot(&(touch.point - first.point))).abs()
@@ -148,7 +150,8 @@ impl PatchBuilder {
         if new >= FLAT {
             return false;
         }
-        // A bound first: with hundreds of touches, all errors for each manifold would take half the time of a trial.
+        // With hundreds of touches, all errors for each manifold would take half the computing time; the bound suffices
+        // for most manifolds.
         let moved = (fit.intercept - self.fit.intercept).abs()
             + (fit.slope - self.fit.slope).norm() * self.sums.reach;
         let bound = self.fit.error + moved;
@@ -163,7 +166,8 @@ impl PatchBuilder {
     }
 }
 
-/// Returns at most four points that span a patch, the deepest among them.
+/// Returns the indices of at most four of `count` points that span a patch with the normal `axis`, the deepest among
+/// them.
 pub(super) fn extremes(
     count: usize,
     place: impl Fn(usize) -> Vector3<f64>,

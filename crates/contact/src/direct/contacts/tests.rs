@@ -61,7 +61,7 @@ fn boxes_separated_by_a_face_of_one_are_recognized() {
     }
 }
 
-/// Returns touches of two bodies at points of a plane, given as x, y and gap, each of another pair of geoms.
+/// Returns touches of two bodies at points of a plane, given as x, y and gap, each of another geom pair.
 fn touches(points: &[[f64; 3]]) -> Vec<Touch> {
     let touch = |(geoms, [x, y, gap]): (usize, &[f64; 3])| {
         let (point, normal) = (Point3::new(*x, *y, 0.5 * gap), Vector3::z());
@@ -136,7 +136,7 @@ fn touches_of_tiles(count: i32, poses: &[Pose]) -> (Vec<Gaps>, usize) {
         bodies[1].put(*pose);
         let mut found = Vec::new();
         detector.detect(&bodies, 5e-4, &mut found);
-        // Of many pairs of shapes, contacts with wider gaps are omitted unless the gap closes within the step.
+        // With many geom pairs, contacts with wider gaps are omitted unless the gap closes within the step.
         let near = found.iter().filter(|touch| touch.gap < NEAR);
         touched.push(near.map(|touch| (touch.point, touch.gap)).collect());
     }

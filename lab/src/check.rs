@@ -1,4 +1,5 @@
-//! `lab check`: compares an engine with closed formulas, or its windows with those at finer steps or by another search.
+//! `lab check`: compares an engine with closed-form solutions, or its windows with those at finer steps or by another
+//! search.
 
 use crate::compare::{Setting, TaskSettings, pairs};
 use crate::validate::{Fingers, search_name, tasks};
@@ -15,7 +16,7 @@ use insertion::trial::engine::EngineKind;
 use insertion::trial::run::EngineRig;
 use std::sync::Arc;
 
-/// Largest accepted move of an end when the step is halved, in grid steps: 0.1 mm.
+/// Largest accepted shift of a window's end at a finer time step, in grid steps of 0.1 mm.
 const ALLOWED_STEPS: OffsetStep = 1;
 
 /// Compare the contact engine with analytic results.
@@ -92,7 +93,7 @@ fn finer(task: Task, robot: &Robot, engine: Box<dyn Engine>) -> Result<TaskSetti
     Ok(TaskSettings { task, settings })
 }
 
-/// Returns the settings of a task with both searches.
+/// Returns the settings of a task with the exhaustive and with the coarse-to-fine search.
 fn searches(task: Task, robot: &Robot, engine: Box<dyn Engine>) -> Result<TaskSettings, Failure> {
     let rig = Arc::new(EngineRig::new(task.clone(), robot, engine).map_err(Failure::input)?);
     let setting =

@@ -50,7 +50,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let tasks = tasks(&arguments.task)?.into_iter().map(settings);
     let tasks = tasks.collect::<Result<Vec<_>, Failure>>()?;
-    // The softest and the stiffest.
+    // Without the one of median stiffness.
     let mut designs = Fingers::Three.designs();
     designs.remove(1);
     let check = engines::run(&tasks, &designs, arguments.reduced);

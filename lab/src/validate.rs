@@ -1,4 +1,4 @@
-//! `lab validate`: our tolerance windows beside the published ones.
+//! `lab validate`: compares our tolerance windows with the published ones.
 
 use crate::compare::published as beside;
 use crate::{Failure, print, print_json};

@@ -1,4 +1,4 @@
-//! Commands of `lab` without a test file of their own; windows under half the step and another search.
+//! Commands of `lab` without a test file of their own; windows at half the time step and by the other search.
 
 mod common;
 
@@ -20,7 +20,7 @@ fn every_help_shows_an_example() {
     }
 }
 
-/// On usb not with the softest finger: its positive end is not firm (docs/notes/simulation.md, "The step").
+/// The softest finger on usb is excepted: its positive end depends on the step (docs/notes/simulation.md, "Step size").
 #[test]
 fn windows_on_half_the_step_are_the_same() {
     for (task, softest, count) in [("rj45", 0.0, 3), ("usb", 1.5, 2)] {

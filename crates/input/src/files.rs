@@ -1,6 +1,6 @@
-//! Files: reading up to a limit, atomic writing; and escaping of texts for terminals.
+//! Files: reading up to a size limit, atomic writing, and escaping of texts for terminals.
 //!
-//! A path from the user may be anything that opens: a link, a pipe, a device.
+//! A path from the user may lead to a symbolic link, a pipe or a device.
 
 use std::fs::{self, File, Metadata, OpenOptions, Permissions};
 use std::io::{self, Read, Write};
@@ -8,14 +8,14 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
-/// Largest size of an input file, bytes: a thousand times that of the longest shipped one.
+/// Largest size of an input file, bytes: hundreds of times that of the longest shipped one.
 pub const LARGEST_INPUT: u64 = 4 << 20;
 /// Largest size of a file that the program has written, except for journals, bytes.
 pub const LARGEST_OWN: u64 = 64 << 20;
 /// Largest size of a journal, bytes: over a million evaluations.
 pub const LARGEST_JOURNAL: u64 = 2 << 30;
 
-/// Prefix and suffix of a temporary file's name, around process and number.
+/// Prefix and suffix of a temporary file's name; process ID and counter are between them.
 const TEMPORARY: [&str; 2] = [".optimize-", ".new"];
 /// Age from which a temporary file is assumed to have been left by a killed process.
 const ABANDONED: Duration = Duration::from_secs(3600);
@@ -47,8 +47,8 @@ fn utf8(bytes: Vec<u8>) -> io::Result<String> {
     String::from_utf8(bytes).map_err(|_| io::Error::new(io::ErrorKind::InvalidData, problem))
 }
 
-/// Writes a file at a path given by the user. A plain file keeps its mode and is written atomically; a device, a
-/// pipe or the target of a link is written in place.
+/// Writes a file at a path given by the user. A regular file keeps its permissions and is written atomically; a device,
+/// a pipe or the target of a symbolic link is written in place.
 ///
 /// # Errors
 /// If it cannot be written, or is read-only.
@@ -65,7 +65,7 @@ fn read_only() -> io::Error {
     io::Error::new(io::ErrorKind::PermissionDenied, "it is read-only")
 }
 
-/// Writes a file atomically, even if the process is killed. A link is replaced.
+/// Writes a file atomically, even if the process is killed. A symbolic link is replaced.
 ///
 /// # Errors
 /// If it cannot be written.
@@ -89,8 +89,8 @@ fn write_whole(path: &Path, content: &[u8], mode: Option<Permissions>) -> io::Re
     written
 }
 
-/// Text file of the user to which lines are added, locked against other processes. The file itself is not
-/// replaced, so it keeps its mode and its links.
+/// Text file of the user, locked against other processes and changed in place, so that it keeps its permissions and
+/// hard links.
 #[derive(Debug)]
 pub struct LockedFile {
     file: File,
@@ -133,7 +133,8 @@ impl LockedFile {
     /// Replaces the text, by appending if possible. The new text is on the disk when this function returns.
     ///
     /// # Errors
-    /// If it cannot be written; the file is then unchanged.
+    /// If the file cannot be written; the old text is then restored or, if that fails after a rewrite, left in the copy
+    /// `<name>.before`. Also if that copy cannot be made or removed.
     pub fn replace(&mut self, new: &str) -> io::Result<()> {
         let appends = new.starts_with(&self.text);
         let kept = if appends { self.text.len() } else { 0 };
@@ -146,8 +147,8 @@ impl LockedFile {
         written.map(|()| new.clone_into(&mut self.text))
     }
 
-    /// Makes a copy in case the process is killed while the file is rewritten. An existing file is not
-    /// overwritten.
+    /// Copies the text to `<name>.before`, in case the process is killed while the file is rewritten. An existing file
+    /// is not overwritten.
     fn back_up(&self) -> io::Result<PathBuf> {
         let mut name = self.path.file_name().unwrap_or_default().to_owned();
         name.push(".before");
@@ -214,7 +215,8 @@ pub fn remove_abandoned(folder: &Path) {
     }
 }
 
-/// Returns whether the metadata are those of an open file.
+/// Returns whether the metadata are those of an open file; on a system other than Unix, only whether both are of a
+/// regular file or both are not.
 ///
 /// # Errors
 /// If the system does not provide them.
@@ -229,8 +231,8 @@ pub fn is_open_file(found: &Metadata, open: &File) -> io::Result<bool> {
     Ok(found.is_file() == open.is_file())
 }
 
-/// Escapes control characters, which terminals interpret, and those that change the text direction, as
-/// `\u001b`, so that JSON stays valid.
+/// Escapes control characters, which terminals interpret, and those that change the text direction, as `\u001b`, so
+/// that JSON stays valid. Line breaks and tabs stay.
 pub fn visible(text: &str) -> String {
     let mut shown = String::with_capacity(text.len());
     for c in text.chars() {
@@ -265,7 +267,7 @@ mod tests {
         fs::write(&path, "12345").unwrap();
         assert_eq!(read_text(&path, 5).unwrap(), "12345");
         assert!(read_text(&path, 4).unwrap_err().to_string().contains("longer than 4 bytes"));
-        // Sparse: nothing of it is on the disk.
+        // A sparse file, which takes no space on the disk.
         File::options().write(true).open(&path).unwrap().set_len(1 << 40).unwrap();
         assert!(read_text(&path, LARGEST_INPUT).is_err());
     }

@@ -1,5 +1,5 @@
-//! Input files: reading up to a limit, checks, errors and units. Internally, every quantity is in SI units;
-//! millimetres, newtons per millimetre and degrees appear only in names with these units ([`units`]).
+//! Input files: reading up to a size limit, checks, errors and units. Internally, every quantity is in SI units; a
+//! quantity in another unit, such as mm, N/mm or degrees, has the unit in its name ([`units`]).
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 #![deny(clippy::print_stdout, clippy::print_stderr)]
@@ -18,12 +18,12 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use toml::Spanned;
 use toml::de::DeTable;
 
-/// Largest absolute value of a number in a file; beyond it the unit is wrong, and sums and products
-/// could overflow.
+/// Largest magnitude of a number in a file. A larger one is probably in a wrong unit, and could overflow in sums and
+/// products.
 const LARGEST: f64 = 1e9;
 /// Smallest value of a number that must be above 0.
 const SMALLEST: f64 = 1e-9;
-/// Longest length and largest coordinate, mm.
+/// Largest magnitude of a coordinate or a displacement, mm.
 const LONGEST_MM: f64 = 1000.0;
 
 /// Returns the error of a file with invalid TOML or an unexpected structure; `text` is that of the file.
@@ -34,7 +34,8 @@ pub fn syntax(file: &str, text: &str, error: &toml::de::Error) -> InputError {
     Place { line, ..Place::file(file) }.fault(problem)
 }
 
-/// Returns a question with the accepted word nearest to an unknown one; empty if there is none.
+/// Returns a question that suggests the accepted word nearest to the unknown word of a parser's message; empty if none
+/// is near.
 fn suggestion(message: &str) -> String {
     let mut words = message.split('`').skip(1).step_by(2);
     let (Some(given), accepted) = (words.next(), words.collect::<Vec<_>>()) else {
@@ -71,12 +72,12 @@ impl<'a> Document<'a> {
         Ok(Document { text, file, tree })
     }
 
-    /// Returns the file as given.
+    /// Returns the file name, as passed to [`Document::parse`].
     pub fn file(&self) -> &str {
         self.file
     }
 
-    /// Returns the document without these keys of its root.
+    /// Returns the document without these top-level keys.
     pub fn without(mut self, keys: &[&str]) -> Self {
         for key in keys {
             self.tree.get_mut().remove(*key);
@@ -87,7 +88,8 @@ impl<'a> Document<'a> {
     /// Deserializes the whole document.
     ///
     /// # Errors
-    /// If the structure differs, or the document has a control character or an invalid name.
+    /// If the document does not have the structure of `T`, has a control character, or has a `name` that is empty or
+    /// has several lines.
     pub fn read<T: DeserializeOwned>(&self) -> Result<T, InputError> {
         let (value, table) = (self.deserialize()?, self.deserialize()?);
         if let Some((key, problem)) = bad_text(&table) {
@@ -113,13 +115,13 @@ impl<'a> Document<'a> {
 /// Reads TOML; `file` is named in errors.
 ///
 /// # Errors
-/// If the text is not TOML of this structure, or has a control character.
+/// See [`Document::parse`] and [`Document::read`].
 pub fn read<T: DeserializeOwned>(text: &str, file: &str) -> Result<T, InputError> {
     Document::parse(text, file)?.read()
 }
 
-/// Returns key and problem of a text with a control character, which would reach terminals and pages, or of
-/// a `name` that is empty or has several lines.
+/// Returns the top-level key and the problem of the first text with a control character, which would reach terminals
+/// and pages, or of a `name` that is empty or has several lines.
 pub fn bad_text(table: &toml::Table) -> Option<(String, &'static str)> {
     const CONTROL: &str = "has a control character, such as \\u001b";
     fn problem(key: &str, value: &toml::Value) -> Option<&'static str> {
@@ -144,10 +146,11 @@ pub fn bad_text(table: &toml::Table) -> Option<(String, &'static str)> {
 /// that begin with `#` are comments; `file` is named in the error.
 ///
 /// # Errors
-/// The first line with an unclosed cell.
+/// If a line has an unclosed cell; the error is about the first one.
 pub fn check_quotes(text: &str, file: &str) -> Result<(), InputError> {
     let runs_over = |line: &str| {
-        // A quotation mark opens a cell only at its beginning; twice, it stands for itself.
+        // A quotation mark opens a quoted cell only at the beginning of the cell; within it, a doubled mark is a
+        // literal one.
         let (mut quoted, mut opens) = (false, true);
         for c in line.chars() {
             (quoted, opens) = match c {
@@ -180,7 +183,7 @@ pub fn counted(count: usize, noun: &str) -> String {
 /// Checker of the values of a file.
 #[derive(Debug, Clone, Copy)]
 pub struct Check<'a> {
-    /// The file as given.
+    /// File name for errors.
     pub file: &'a str,
 }
 
@@ -194,7 +197,7 @@ impl Check<'_> {
         Err(Place { key, ..Place::file(self.file) }.fault(problem))
     }
 
-    /// Checks a condition of a value; `must` is the requirement in words.
+    /// Returns the value if it `fits`, else an error; `must` is the requirement, as in "be above 0".
     pub fn require(
         &self,
         key: &str,
@@ -250,10 +253,10 @@ impl Check<'_> {
         self.require(key, value, fits, "be a finite number, 0 or above, 1e9 at most")
     }
 
-    /// Checks that a coordinate or a difference of two, mm, is at most 1 m.
+    /// Checks that a coordinate or a displacement, mm, lies in -1000 .. 1000.
     ///
     /// # Errors
-    /// If it is longer or not finite.
+    /// If it does not.
     pub fn distance(&self, key: &str, mm: f64) -> Result<f64, InputError> {
         let fits = self.finite(key, mm)?.abs() <= LONGEST_MM;
         self.require(key, mm, fits, &format!("lie in -{LONGEST_MM} .. {LONGEST_MM} (mm)"))

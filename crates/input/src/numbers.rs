@@ -11,12 +11,13 @@ pub const DESIGN: Check<'static> = Check { file: "design" };
 /// Names of the numbers in a vector.
 const VECTOR: [&str; 3] = ["x", "y", "z"];
 
-/// TOML file as read. The key of a number is the root, then the path in the file. One of several tables is
-/// identified by its `name`, a number in a vector by `x`, `y` or `z`, and one in any other list by its index, from 0.
+/// TOML file as read. The key (or path) of a number is the root, such as `task`, then the keys in the file. One of
+/// several tables is identified by its `name`, a number in a vector by `x`, `y` or `z`, and one in any other list by
+/// its index, from 0.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NumberFile {
     root: &'static str,
-    /// The file as given.
+    /// File name for errors.
     pub file: String,
     table: Table,
 }
@@ -25,7 +26,7 @@ impl NumberFile {
     /// Reads the numbers of a file.
     ///
     /// # Errors
-    /// If the file has a control character.
+    /// See [`Document::read`].
     pub fn read(root: &'static str, document: &Document<'_>) -> Result<Self, InputError> {
         Ok(NumberFile { root, file: document.file().to_owned(), table: document.read()? })
     }
@@ -50,7 +51,7 @@ impl NumberFile {
     /// Returns the table with new values of some of its numbers.
     ///
     /// # Errors
-    /// If a key matches no number or two numbers; the message suggests keys of the file and of `elsewhere`.
+    /// If a key matches no number or two numbers; the message suggests keys of the file and those in `elsewhere`.
     pub fn with<'k>(
         &self,
         values: impl IntoIterator<Item = (&'k str, f64)>,

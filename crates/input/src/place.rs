@@ -5,11 +5,11 @@ use std::fmt;
 /// Place of an error in the input, as far as known.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Place {
-    /// The file as given.
+    /// File name as given by the user.
     pub file: Option<String>,
     /// Line of the file, counted from 1.
     pub line: Option<usize>,
-    /// Path of the field in the file, its column, or the name of the option in Python.
+    /// Path of the field in a TOML file, column of a CSV file, or name of the option in Python.
     pub key: Option<String>,
 }
 
@@ -28,7 +28,7 @@ pub struct InputError {
     pub problem: String,
 }
 
-/// Error of a request, whose text names its place.
+/// Error of a request (the options of a command); its text already includes the place.
 #[derive(Debug, thiserror::Error)]
 #[error("{text}")]
 pub struct RequestError {
@@ -44,8 +44,8 @@ impl Place {
         Place { file: Some(file.into()), ..Place::default() }
     }
 
-    /// Returns the place of the command-line option with which a text begins, under its name in Python; an empty
-    /// place if it begins with none.
+    /// Returns the place of the command-line option at the beginning of a message, by its name in Python: `seed_count`
+    /// for `--seed-count`. The place is empty if the message does not begin with an option.
     pub fn option(text: &str) -> Self {
         let name = text.strip_prefix("--").unwrap_or_default();
         let end = name.find(|c: char| !c.is_ascii_lowercase() && c != '-').unwrap_or(name.len());
@@ -82,7 +82,7 @@ impl Placed for RequestError {
 
 impl fmt::Display for InputError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        // The parser of TOML begins its problem with the line.
+        // Messages of the TOML parser begin with the line.
         let line = self.place.line.filter(|_| !self.problem.starts_with("TOML parse error"));
         write!(f, "{}: {}", Place { line, ..self.place.clone() }, self.problem)
     }

@@ -26,7 +26,7 @@ macro_rules! shipped {
     };
 }
 
-/// Connector insertion tasks of the paper.
+/// Connector insertion tasks of the paper in which the shipped fingers were measured.
 pub const TASKS: &[Shipped] = shipped! {
     "ket8": "tasks/ket8.toml",
     "ket12": "tasks/ket12.toml",
@@ -34,7 +34,7 @@ pub const TASKS: &[Shipped] = shipped! {
     "usb": "tasks/usb.toml",
 };
 
-/// Tasks with connectors of the same kinds that have the mechanisms and clearances of commercial connectors.
+/// Tasks with the mechanisms and clearances of commercial RJ45 and USB connectors.
 pub const COMMERCIAL: &[Shipped] = shipped! {
     "rj45_latch": "tasks/rj45_latch.toml",
     "usb_a": "tasks/usb_a.toml",
@@ -61,22 +61,22 @@ pub const FINGERS: &[Shipped] = shipped! { "finray9": "fingers/finray9.toml" };
 /// Distributions of the errors of an insertion.
 pub const UNCERTAINTIES: &[Shipped] = shipped! { "typical": "uncertainties/typical.toml" };
 
-/// Priors of the unmeasured parameters of a cell, for `calibrate`.
+/// Priors of the unmeasured parameters of a robot cell, for `calibrate`.
 pub const PRIORS: &[Shipped] = shipped! { "bench": "priors/bench.toml" };
 
-/// Adjustable parameters of a cell beside the infill, for `levers`.
+/// Adjustable parameters of a robot cell other than the infill, for `levers`.
 pub const LEVERS: &[Shipped] = shipped! { "levers": "priors/levers.toml" };
 
 /// Measured stiffness of printed fingers.
 pub const STIFFNESS: &[Shipped] = shipped! { "measured": "data/measured_stiffness.csv" };
 
-/// Measurements on a bench.
+/// Published results of the paper's experiments on a physical test bench.
 pub const MEASUREMENTS: &[Shipped] = shipped! { "published": "data/published_bench.csv" };
 
 /// Text of a file with its name for messages.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Deserialize)]
 pub struct Source {
-    /// File name as the user knows it.
+    /// File name as given by the user, or [`Shipped::file`].
     pub file: String,
     /// Text of the file.
     pub text: String,
@@ -86,7 +86,8 @@ pub struct Source {
 /// extension), the file at that path.
 ///
 /// # Errors
-/// If there is no such file; the message lists the nearest name and all names.
+/// If there is no such file or it cannot be read; the message about an unknown name lists the nearest name and all
+/// names.
 pub fn resolve(kind: &str, shipped: &[Shipped], name: &str) -> Result<Source, RequestError> {
     if let Some(found) = shipped.iter().find(|shipped| shipped.name == name) {
         return Ok(Source { file: found.file.to_owned(), text: found.text.to_owned() });

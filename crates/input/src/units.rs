@@ -16,10 +16,10 @@ pub const GPA: f64 = 1e9;
 /// One gram, in kilograms.
 pub const GRAM: f64 = 1e-3;
 
-/// One percent, as a share.
+/// One percent, as a fraction.
 pub const PERCENT: f64 = 0.01;
 
-/// Number, or array, list or option of numbers, that is converted by a factor.
+/// Number, or array, `Vec` or `Option` of numbers, that a factor converts to another unit.
 pub trait Quantity<'de>: Deserialize<'de> {
     /// Multiplies all numbers by a factor.
     fn times(self, factor: f64) -> Self;
@@ -52,7 +52,7 @@ impl<'de, T: Quantity<'de>> Quantity<'de> for Option<T> {
     }
 }
 
-/// Readers of quantities in SI units, for `#[serde(deserialize_with)]`.
+/// Deserializers that convert to SI units, for `#[serde(deserialize_with)]`.
 #[expect(clippy::missing_errors_doc, reason = "that of the deserializer")]
 pub mod read {
     use super::{DEG, Deserializer, GPA, GRAM, MM, N_PER_MM, PERCENT, Quantity};
@@ -82,13 +82,13 @@ pub mod read {
         Ok(T::deserialize(from)?.times(N_PER_MM))
     }
 
-    /// Reads percent as a share.
+    /// Reads percent as a fraction.
     pub fn percent<'de, T: Quantity<'de>, D: Deserializer<'de>>(from: D) -> Result<T, D::Error> {
         Ok(T::deserialize(from)?.times(PERCENT))
     }
 }
 
-/// Formats a length in mm, rounded to a micrometre.
+/// Formats a length, given in m, as the number of millimetres, rounded to a micrometre.
 pub fn mm(length: f64) -> String {
     format!("{}", (length / MM * 1e3).round() / 1e3)
 }

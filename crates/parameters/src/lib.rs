@@ -1,5 +1,5 @@
-//! Variable quantities: the table of all [`numbers`] with a [`Path`] for each, a [`Parameter`] with
-//! distribution and bounds, search spaces, and sampling plans.
+//! Numbers of the input files: the table of all [`numbers`] with their [`Path`]s, uncertain [`Parameter`]s, search
+//! spaces, and sampling plans.
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 #![deny(clippy::print_stdout, clippy::print_stderr)]

@@ -1,8 +1,8 @@
-//! Table of all numbers in the input files and of the other numbers that may vary, with plausible bounds. Each
-//! path ends in the unit.
+//! Table of all numbers in the input files and of the other numbers that may vary, with plausible bounds. The unit of a
+//! number and of its bounds is the suffix of a word of its path (`_nm` is N m); without one it is dimensionless.
 //!
-//! In a pattern `*` matches a name or a list index (a phase, a part, an end of a span), and `a|b`
-//! either word.
+//! In a pattern `*` matches a name, an axis or a list index (of a phase, a part, an end of a span), and `a|b` matches
+//! the word `a` or `b`.
 
 use input::{Check, InputError, shown};
 use toml::Value;
@@ -11,49 +11,49 @@ use toml::Value;
 pub const DENSITY: &str = "infill_density_percent";
 /// Infill direction.
 pub const DIRECTION: &str = "infill_direction_deg";
-/// Friction between plug and socket.
+/// Coefficient of friction between plug and socket.
 pub const FRICTION: &str = "task.friction.plug_socket";
-/// Friction between pad and plug.
+/// Coefficient of friction between pad and plug.
 pub const PAD_FRICTION: &str = "task.friction.finger_plug";
-/// Change of the width of the socket's opening.
+/// Increase of the width of the socket's opening in x and in y.
 pub const CLEARANCE: &str = "task.clearance_mm";
-/// Radius of the lead-in edges, for a task with sharp ones.
+/// Radius cut into the lead-in edges of plug and socket; 0 leaves them as in the task file.
 pub const EDGE_RADIUS: &str = "task.edge_radius_mm";
-/// Chamfer at the socket's opening, for a task without one.
+/// Chamfer cut into the edges of the socket's opening; 0 leaves them as in the task file.
 pub const CHAMFER: &str = "task.opening_chamfer_mm";
 /// Common factor on the stiffness of a finger in compliance and in assembly direction.
 pub const STIFFNESS: &str = "finger.stiffness";
 /// Distance of a finger's remote centre of compliance below the TCP.
 pub const RCC_KEY: &str = "finger.rcc_mm";
-/// Rotational spring of a finger about x.
+/// Rotational stiffness of a finger about x.
 pub const TILTING_KEY: &str = "finger.rotation_x_nm_per_rad";
 /// Stiffness along x of a compliant flange; its other stiffnesses scale in proportion.
 pub const FLANGE: &str = "robot.stiffness_n_per_mm";
-/// Shift of the start along x.
+/// Shift of the start along x, across the compliance direction (y).
 pub const START_ACROSS: &str = "cell.start_across_mm";
-/// Rotation of the start about x, in addition to the tilt of the search.
+/// Rotation of the start about x, in addition to the tilt of the strategy.
 pub const START_TILT: &str = "cell.start_tilt_deg";
 /// Rotation of the socket about z.
 pub const SOCKET_YAW: &str = "cell.socket_yaw_deg";
 
-/// Object to which a number belongs, and how it is set.
+/// Kind of a number: the object to which it belongs, and how it is set.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
-    /// A coordinate of the infill.
+    /// Density or direction of the infill.
     Infill,
-    /// Number in the text of a task or finger file, set before the checks of the file.
+    /// Number in a task or finger file, set before the file is checked.
     File,
-    /// Number of the finger built from the files.
+    /// Number of the simulated finger, set after it is built from its files.
     Finger,
-    /// Number of the robot built from its file.
+    /// Number of the simulated robot, set after it is built from its file.
     Robot,
-    /// Change of a shape of the task; its nominal value is 0.
+    /// Clearance, radius or chamfer that is added to the shapes of the task; 0 leaves them unchanged.
     Added,
-    /// Factor on both springs of the finger.
+    /// Factor on the compliance and the assembly stiffness of the finger.
     Springs,
-    /// Random error of an insertion, relative to nominal.
+    /// Random error of an insertion, as the deviation from nominal.
     Error,
-    /// Number in a file without a path of its own, since it varies only together with others, or not at all.
+    /// Number in a file that is checked but cannot be set alone: it varies only together with others, or not at all.
     Fixed,
 }
 
@@ -62,7 +62,7 @@ pub enum Kind {
 pub struct NumberSpec {
     /// Pattern of the paths.
     pub pattern: &'static str,
-    /// Object to which the numbers belong.
+    /// Kind of the numbers.
     pub kind: Kind,
     /// Smallest and largest plausible value.
     pub bounds: [f64; 2],
@@ -77,19 +77,19 @@ const fn file(pattern: &'static str, low: f64, high: f64) -> NumberSpec {
 const fn error(pattern: &'static str, largest: f64) -> NumberSpec {
     number(Kind::Error, pattern, -largest, largest)
 }
-/// A coordinate or a difference of two, mm.
+/// A coordinate or a displacement, mm.
 const fn distance(pattern: &'static str) -> NumberSpec {
     file(pattern, -1e3, 1e3)
 }
-/// A length above 0, mm, or a time, s.
+/// A length, mm, or a time, s, above 0.
 const fn length(pattern: &'static str) -> NumberSpec {
     file(pattern, SMALLEST, 1e3)
 }
-/// A size of a part, mm: at least 1 um, far below the smallest printable size.
+/// A size of a part, mm. The lower bound, 1 um, is far below the smallest printable size.
 const fn size(pattern: &'static str) -> NumberSpec {
     file(pattern, 1e-3, 1e3)
 }
-/// A spring, a damper or the mass of the finger.
+/// A stiffness, a damping or the mass of the finger, in the unit of the pattern.
 const fn finger(pattern: &'static str) -> NumberSpec {
     number(Kind::Finger, pattern, SMALLEST, 1e6)
 }
@@ -99,9 +99,9 @@ const fn fixed(pattern: &'static str, low: f64, high: f64) -> NumberSpec {
 /// Smallest value of a number that must be above 0.
 const SMALLEST: f64 = 1e-9;
 
-/// All numbers. The numbers of an arm's joints do not vary: together they describe one published arm.
+/// All numbers. Those of an arm's joints are fixed, since together they describe one published arm.
 pub static NUMBERS: &[NumberSpec] = &[
-    // A density below 1 % is not an infill: 0.2 is a fraction that should be a percentage.
+    // A density below 1 % is probably a fraction, such as 0.2 for 20 %.
     number(Kind::Infill, DENSITY, 1.0, 100.0),
     number(Kind::Infill, DIRECTION, 0.0, 90.0),
     file("task.turn_in_base_deg", -360.0, 360.0),
@@ -121,6 +121,7 @@ pub static NUMBERS: &[NumberSpec] = &[
     file("task.friction.plug_socket|finger_plug", 0.0, 5.0),
     file("task.friction.finger_plug_torsion_mm", 0.0, 500.0),
     length("task.finger.rcc_mm"),
+    // In mm, and in mm per degree of the infill direction.
     length("task.finger.rcc_mm.at_0_deg"),
     distance("task.finger.rcc_mm.per_deg"),
     file("task.finger.coupling.*.coefficient", -1.0, 1.0),
@@ -137,7 +138,7 @@ pub static NUMBERS: &[NumberSpec] = &[
     fixed("task.mating_force.force_n.*", 0.0, 1e5),
     distance("task.success.mated.tip_mm.*"),
     length("task.success.mated.lateral_mm"),
-    // Connectors that are drafted from dimensions.
+    // Dimensions from which task files of connectors are drafted.
     fixed("connector.size_mm", 0.5, 200.0),
     fixed("connector.clearance_mm", 1e-3, 20.0),
     fixed("connector.pin_mm", 0.1, 50.0),
@@ -159,7 +160,7 @@ pub static NUMBERS: &[NumberSpec] = &[
     length("finger.holes.spacing_mm|diameter_mm"),
     length("finger.holes.block.length_mm|width_mm|overlap_mm"),
     length("finger.print.line_width_mm|smallest_gap_mm"),
-    // Up to a thousand times the stiffness of a solid finger.
+    // The upper bound is a thousand times the stiffness of a solid finger.
     fixed("stiffness_assembly_n_per_mm|stiffness_compliance_n_per_mm", 1e-6, 1e6),
     number(Kind::Springs, STIFFNESS, SMALLEST, 1e6),
     // The remote centre may lie on either side of the TCP.
@@ -167,7 +168,7 @@ pub static NUMBERS: &[NumberSpec] = &[
     finger("finger.rotation_x_nm_per_rad|rotation_y_nm_per_rad|rotation_z_nm_per_rad"),
     finger("finger.depth_n_per_mm|mass_g"),
     finger("finger.damping_n_s_per_m|rotational_damping_nm_s_per_rad"),
-    // From a cushion to a machine tool. Ten times the value of a stiff industrial arm is a value in N/m.
+    // From the stiffness of a cushion to that of a machine tool. A larger value is probably in N/m.
     number(Kind::Robot, "robot.stiffness_n_per_mm", 0.01, 5e3),
     number(Kind::Robot, "robot.stop_force_n", 0.1, 1e5),
     number(Kind::Robot, "robot.mass_kg", 1e-3, 1e3),
@@ -250,7 +251,7 @@ pub fn check(check: Check<'_>, path: &str, value: f64) -> Result<(), InputError>
     problem(path, value).map_or(Ok(()), |problem| check.fail(path, problem))
 }
 
-/// Checks all numbers of a file against the table; `root` is the first word of their paths.
+/// Checks the numbers of a file that are in the table against their bounds; `root` is the first word of their paths.
 ///
 /// # Errors
 /// If a number is out of bounds; the error is about the first one.
@@ -259,7 +260,7 @@ pub fn check_file(root: &str, content: &Value, file: &str) -> Result<(), InputEr
     check_value(Check { file }, "", content, &advance(&all, |word| word == root))
 }
 
-/// Entry of the table whose pattern begins like the path, and the rest of the pattern.
+/// Entry of the table whose pattern matches the beginning of a path, and the rest of the pattern.
 type PartialMatch = (&'static NumberSpec, &'static str);
 
 /// Returns the entries whose patterns continue with a matching word, advanced by this word.
@@ -291,7 +292,7 @@ fn check_value(
         }
         Value::Array(items) => {
             let mut below = advance(rows, |one| one == "*");
-            // The numbers of a list that vary together have one path.
+            // A pattern that ends at a list applies to all its numbers, which vary together.
             below.extend(rows.iter().filter(|(_, rest)| rest.is_empty()));
             items.iter().try_for_each(|item| check_value(check, key, item, &below))
         }

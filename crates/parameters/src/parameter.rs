@@ -1,4 +1,4 @@
-//! Uncertain number with its distribution and bounds.
+//! Uncertain parameter with its distribution and bounds.
 
 use crate::numbers::Kind;
 use crate::path::Path;
@@ -8,7 +8,7 @@ use input::{Check, InputError, shown};
 use rand::RngExt;
 use serde::{Deserialize, Serialize};
 
-/// Spacing of values.
+/// Scale on which values are evenly spaced.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Scale {
@@ -19,7 +19,7 @@ pub enum Scale {
     Log,
 }
 
-/// Operation of a parameter on the number in the files.
+/// Operation by which the value of a parameter changes the number at its path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Transform {
@@ -31,12 +31,15 @@ pub enum Transform {
     Value,
 }
 
-/// Uncertain number: uniform between its bounds or, if value and deviation are given, a normal
-/// distribution truncated there. Entry of a file of priors, levers or a cell.
+/// Uncertain parameter. Its distribution is uniform between the bounds or, if `value` and `sd` are given, normal and
+/// truncated at the bounds. Entry of a file of priors, of levers (adjustable parameters) or of a robot cell (identified
+/// values).
+///
+/// Value, standard deviation and bounds are in the unit of the path; those of a [`Transform::Factor`] have no unit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Parameter {
-    /// Name in words: `friction plug-socket`.
+    /// Descriptive name: `friction plug-socket`.
     pub name: String,
     /// Path of the number that it sets.
     #[serde(rename = "sets")]
@@ -99,12 +102,12 @@ impl Parameter {
         }
     }
 
-    /// Returns the nominal value: `value` if given, else the middle of the bounds on its scale.
+    /// Returns the nominal value: `value` if given, else the median of the uniform distribution.
     pub fn middle(&self) -> f64 {
         self.value.unwrap_or_else(|| self.at(0.5))
     }
 
-    /// Applies a value of the parameter to a number.
+    /// Returns a number as changed by a value of the parameter.
     pub fn applied(&self, number: f64, value: f64) -> f64 {
         match self.transform {
             Transform::Factor => number * value,
@@ -125,7 +128,7 @@ impl Parameter {
     /// Checks a parameter read from a file.
     ///
     /// # Errors
-    /// If a bound, the value or the transform cannot be used with this path.
+    /// If a bound, the value or the transform cannot be used with this path, or the source is empty.
     pub fn check(&self, check: Check<'_>) -> Result<(), InputError> {
         let Parameter { name, low, high, scale, .. } = self;
         check.finite(name, *low)?;
@@ -185,12 +188,12 @@ fn truncated_normal_quantile(share: f64, from: f64, to: f64) -> f64 {
     normal_quantile(below + share * (above - below))
 }
 
-/// Prefix of the path in the name of a random stream. Each parameter has its own stream, so that
+/// Prefix of the name of a parameter's random stream; the path follows. Each parameter has its own stream, so that
 /// adding or removing one does not change the draws of the others.
 const PURPOSE: &str = "cell ";
 
-/// Returns `count` draws of the parameters, in their order. Draw `i` of a parameter depends only on
-/// the seed, `i` and its path.
+/// Returns `count` draws, each with one value per parameter, in their order. Draw `i` of a parameter depends only on
+/// its distribution and path, the seed and `i`.
 pub fn draws(parameters: &[Parameter], seed: u64, count: u32) -> Vec<Vec<f64>> {
     let draw = |i: u32| {
         let share =
@@ -212,7 +215,7 @@ mod tests {
         Parameter { scale, value, sd, transform: Transform::Factor, ..uniform }
     }
 
-    /// Quartiles of the normal are 0.674490 deviations from its middle.
+    /// The quartiles of a normal distribution lie 0.674490 standard deviations from its median.
     #[test]
     fn value_and_deviation_make_it_normal_within_its_bounds() {
         let with = |scale, sd| friction(scale, Some(1.2), Some(sd));
@@ -251,7 +254,7 @@ mod tests {
     }
 
     proptest! {
-        /// For each accepted parameter, draws lie within the bounds and increase with the share.
+        /// For each accepted parameter, draws lie within the bounds and quantiles do not decrease with the probability.
         #[test]
         fn draws_lie_within_the_bounds(
             low in 1e-3..1e3f64,

@@ -6,7 +6,8 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::ops::Deref;
 
-/// Path of a number in the table: `task.friction.plug_socket`. Its last word ends in the unit.
+/// Path of a number in the table: `task.friction.plug_socket`. The unit, if any, is the suffix of a word:
+/// `task.grip.force_n`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub struct Path {
@@ -34,7 +35,7 @@ impl Path {
         }
     }
 
-    /// Returns the object on which the number is set.
+    /// Returns the kind of the number.
     pub fn kind(&self) -> Kind {
         self.number.kind
     }
@@ -44,7 +45,8 @@ impl Path {
         self.number.bounds
     }
 
-    /// Returns the unit as a suffix to a value, with a leading space if needed; empty if unitless.
+    /// Returns the unit as a suffix to a value, with a leading space if needed; empty if dimensionless or if labels
+    /// omit the unit.
     pub fn unit(&self) -> &'static str {
         label(self).1
     }
@@ -96,7 +98,8 @@ impl<T: AsRef<str> + ?Sized> PartialEq<T> for Path {
     }
 }
 
-/// Suffixes of paths and their units.
+/// Suffixes of words and their units in labels, which omit others. A suffix precedes its own endings: `_n_per_mm`, then
+/// `_mm`.
 const UNITS: [(&str, &str); 10] = [
     ("_gpa", " GPa"),
     ("_percent", " %"),
@@ -109,10 +112,10 @@ const UNITS: [(&str, &str); 10] = [
     ("_kg", " kg"),
     ("_s", " s"),
 ];
-/// Tables of a task file that labels omit.
+/// Words of a path that labels omit.
 const TABLES: [&str; 5] = ["task", "strategy", "phase", "grip", "finger"];
 
-/// Returns a path as words, and its unit: `task.strategy.tilt_deg` is `tilt`, in `°`.
+/// Returns the label of a path, and its unit as in [`Path::unit`]: `task.strategy.tilt_deg` is `tilt`, in `°`.
 pub fn label(path: &str) -> (String, &'static str) {
     let mut unit = "";
     let mut words = Vec::new();
@@ -144,7 +147,7 @@ mod tests {
                     .and_then(|file| NumberFile::read(root, &file))
                     .unwrap();
                 for key in numbers.keys() {
-                    // Stiffnesses of the flange go together, by that along x.
+                    // The stiffnesses of the flange are scaled together, by the one along x.
                     if key.starts_with("robot.") && key.contains("stiffness") {
                         continue;
                     }

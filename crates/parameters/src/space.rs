@@ -1,4 +1,4 @@
-//! Search spaces: named, bounded, stepped parameters, and the designs in them.
+//! Search spaces of discrete design variables, and the designs in them.
 
 use crate::numbers::Kind;
 pub use crate::numbers::{DENSITY as DENSITY_KEY, DIRECTION as DIRECTION_KEY};
@@ -12,8 +12,7 @@ fn is_linear(scale: &Scale) -> bool {
     *scale == Scale::Linear
 }
 
-/// Design variable with discrete levels: values are `low + k * step`, on a log scale `low *
-/// step^k`.
+/// Design variable with discrete values: level `k`, from 0, is `low + k * step`, on a log scale `low * step^k`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Variable {
@@ -75,31 +74,32 @@ impl Variable {
         }
     }
 
-    /// Returns the position of a value between the bounds, 0 to 1; 0.5 if the bounds are equal.
+    /// Returns the relative position of a value between the bounds, 0 to 1, linear on either scale; 0.5 if the bounds
+    /// are equal.
     pub fn share(&self, value: f64) -> f64 {
         let span = self.high - self.low;
         if span > 0.0 { (value - self.low) / span } else { 0.5 }
     }
 
-    /// Returns the level with the nearest value.
+    /// Returns the level with the nearest value, on a log scale the nearest in ratio.
     pub fn nearest(&self, value: f64) -> u32 {
         self.steps_to(value).round().clamp(0.0, f64::from(self.levels() - 1)) as u32
     }
 
-    /// Returns the value of a level, rounded so that it prints as written in the file.
+    /// Returns the value of a level, rounded to 9 decimals, on a log scale to 4 significant digits, so that it prints
+    /// as written in the file.
     pub fn value(&self, level: u32) -> f64 {
         match self.scale {
             Scale::Linear => ((self.low + f64::from(level) * self.step) * 1e9).round() / 1e9,
             Scale::Log => {
                 let share = f64::from(level) / self.steps().round().max(1.0);
                 let value = self.low * libm::pow(self.high / self.low, share);
-                // Four significant digits.
                 format!("{value:.3e}").parse().unwrap_or(value)
             }
         }
     }
 
-    /// Converts to a parameter with a uniform distribution between the bounds.
+    /// Converts to a parameter with a uniform distribution between the bounds, even if the variable has a log scale.
     pub fn parameter(&self) -> Parameter {
         let source = self.source.clone();
         Parameter { source, ..Parameter::uniform(self.key.clone(), [self.low, self.high]) }
@@ -115,8 +115,8 @@ impl Variable {
     }
 }
 
-/// Returns all combinations of extreme values. A variable is skipped if the combinations would
-/// exceed `most`.
+/// Returns the designs with all combinations of [`Variable::extremes`]. A variable that would make them more than
+/// `most` is left out.
 pub fn corners<'a>(parameters: impl IntoIterator<Item = &'a Variable>, most: usize) -> Vec<Design> {
     let mut designs = vec![Design::default()];
     for parameter in parameters {
@@ -133,7 +133,7 @@ pub fn corners<'a>(parameters: impl IntoIterator<Item = &'a Variable>, most: usi
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "RawSpace")]
 pub struct Space {
-    /// Name in study folders.
+    /// Name, as recorded in study folders.
     pub name: String,
     /// One-line description for lists.
     pub description: String,
@@ -205,7 +205,7 @@ struct RawSpace {
     parameter: Vec<Variable>,
 }
 
-/// Conversion of a space inside another file; the reader of that file adds its name to errors.
+/// Conversion of a space that is a table of another file, whose reader adds the file name to errors.
 impl TryFrom<RawSpace> for Space {
     type Error = InputError;
     fn try_from(raw: RawSpace) -> Result<Self, InputError> {

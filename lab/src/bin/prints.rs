@@ -1,5 +1,6 @@
 //! Counts the prints that `optimize next` needs to find the best of the eleven published fingers on synthetic benches
-//! of every task. Their true ranges are linear in the stiffness, curved, or have a step; noise is 0.1 to 0.5 mm.
+//! of every task. True ranges on a bench are a linear, curved or stepped function of the stiffness; the noise of a
+//! measured range is 0.1 to 0.5 mm.
 //!
 //! Writes two tables: `benches.csv` (a line for each bench) and `summary.csv` (means for each task and shape).
 
@@ -28,8 +29,10 @@ use study::write_file;
 const TASKS: [&str; 4] = ["usb", "ket8", "ket12", "rj45"];
 /// Shapes of the true ranges as functions of the stiffness, used in turn.
 const SHAPES: [&str; 4] = ["linear", "curved", "linear", "step"];
+/// Standard deviations of a measured range.
 const NOISES_MM: [f64; 4] = [0.1, 0.2, 0.3, 0.5];
-/// Number of prints after which the regret is computed.
+/// Number of prints after which the regret is computed: the difference between the best true range and that of a chosen
+/// finger.
 const REGRET_PRINTS: usize = 3;
 const HEADER: &str =
     "task,shape,bench,noise_mm,spread_mm,prints_to_best,regret_printed_mm,regret_named_mm\n";
@@ -47,15 +50,15 @@ struct Arguments {
     cache: Option<PathBuf>,
 }
 
-/// Synthetic bench.
+/// Synthetic bench: true ranges of the fingers on a task, and noise of the measurements.
 struct SyntheticBench {
     shape: &'static str,
     noise_mm: f64,
-    /// True ranges of the published fingers.
+    /// In the order of the published fingers.
     ranges_mm: Vec<f64>,
 }
 
-/// Result on one bench.
+/// Result on one bench. `prints_to_best` is 0 if the best finger was never recommended.
 struct BenchResult {
     task: &'static str,
     number: u64,
@@ -86,7 +89,7 @@ fn published() -> Vec<Design> {
     infill.map(|design| Design::infill(design.density_percent, design.direction_deg)).collect()
 }
 
-/// Returns emulator and fingers of a task without measurements.
+/// Returns the fingers and simulations of a task for a calibration, before any measurement.
 fn prepared(task: &str, cache: &CacheRequest) -> Result<Prepared<'static>, Failure> {
     let tasks = vec![TaskSource::Named(task.to_owned())];
     let bench = BenchRequest {
@@ -106,7 +109,7 @@ fn prepared(task: &str, cache: &CacheRequest) -> Result<Prepared<'static>, Failu
 impl SyntheticBench {
     fn new(task: &str, number: u64) -> Self {
         let mut random = stream(number, 0, &format!("bench of {task}"));
-        // Normal components, so that all directions are equally likely.
+        // Two independent directions; normal components make all directions equally likely.
         let [along, across] = [0, 1].map(|_| along([0, 1].map(|_| random.sample(StandardNormal))));
         let mut between = |low: f64, high: f64| low + (high - low) * random.random::<f64>();
         let (level_mm, spread_mm) = (between(4.0, 8.0), between(1.5, 4.0));
@@ -130,7 +133,8 @@ impl SyntheticBench {
     }
 }
 
-/// Returns the positions of the published fingers along a direction in the plane of both scaled stiffnesses, 0 to 1.
+/// Returns the positions, scaled to 0 .. 1, of the published fingers along a direction in the plane of compliance and
+/// assembly stiffness, each scaled to 0 .. 1.
 fn along([x, y]: [f64; 2]) -> Vec<f64> {
     let all = designs();
     let compliance = scaled(all.iter().map(|design| design.compliance).collect());
@@ -150,7 +154,8 @@ fn scaled(values: Vec<f64>) -> Vec<f64> {
     values.iter().map(|value| (value - low) / (high - low)).collect()
 }
 
-/// Prints and measures the recommended fingers until the best finger has been printed.
+/// Simulates print and measurement of recommended fingers until the best finger has been printed and the regrets are
+/// known.
 fn replay(prepared: &Prepared<'_>, task: &'static str, number: u64) -> BenchResult {
     let truth = SyntheticBench::new(task, number);
     let Prepared { subjects, layout, settings } = prepared;

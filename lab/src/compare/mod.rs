@@ -1,4 +1,5 @@
-//! Comparison of the windows of the same fingers with another search, step or engine, and with the published ones.
+//! Comparison of tolerance windows: of the same fingers with another search, step or engine, and with the published
+//! ones.
 
 pub mod engines;
 pub mod pairs;
@@ -20,7 +21,7 @@ use rayon::prelude::*;
 use serde_json::{Value, json};
 use std::sync::Arc;
 
-/// Simulation of a task: engine with its step, and search.
+/// Method by which windows on a task are determined: engine with its step, and search.
 #[derive(Clone)]
 pub struct Setting {
     pub name: String,
@@ -78,7 +79,7 @@ fn subject_json(task: &str, design: &Measurement, measured: Value) -> Value {
     fields
 }
 
-/// Calls `measure` for every design on every task in parallel and returns the results in this order.
+/// Calls `measure` in parallel for every design on every task. Returns the results ordered by task, then by design.
 pub fn each<T: Send>(
     tasks: &[TaskSettings],
     designs: &[Measurement],
@@ -92,7 +93,8 @@ pub fn each<T: Send>(
     pairs.into_par_iter().map(one).collect()
 }
 
-/// Returns the failure classes at the negative and the positive end; `None` without a window.
+/// Returns the failure classes at the negative and the positive end; `None` without a window or if the trial there has
+/// no class.
 fn failures(window: &Window) -> [Option<FailureClass>; 2] {
     [window.end_negative, window.end_positive].map(|end| match (window.nominal, end) {
         (Outcome::Inserted, Some(Outcome::Failed(class))) => Some(class),

@@ -43,7 +43,7 @@ impl WindowPair {
     }
 }
 
-/// Returns the pairs of the first setting with each other one, of every design on every task.
+/// Returns the pairs of windows in the first setting and in each of the others, for every design on every task.
 pub fn measure(tasks: &[TaskSettings], designs: &[Measurement]) -> Vec<WindowPair> {
     let pairs = each(tasks, designs, |subject, settings| {
         let Some((first, others)) = settings.split_first() else { return Vec::new() };
@@ -57,12 +57,13 @@ pub fn measure(tasks: &[TaskSettings], designs: &[Measurement]) -> Vec<WindowPai
     pairs.concat()
 }
 
-/// Returns the mean distance of the ends of the two windows, mm; `None` without pairs.
+/// Returns the mean absolute shift of an end from the first window to the second, mm; `None` without pairs.
 pub fn mean_end_difference_mm(pairs: &[WindowPair]) -> Option<f64> {
     mean(pairs.iter().flat_map(WindowPair::moved_mm).map(f64::abs))
 }
 
-/// Returns a table at most 80 columns wide with a summary, and verdicts if so many grid steps are `allowed`.
+/// Returns a table at most 80 columns wide with a summary; with verdicts, if an `allowed` shift of an end is given, in
+/// grid steps.
 pub fn text(pairs: &[WindowPair], allowed: Option<OffsetStep>) -> String {
     let first = pairs.first().map_or("", |pair| &pair.settings[0]);
     let rows = pairs.iter().map(|pair| {
@@ -100,7 +101,8 @@ fn summary(pairs: &[WindowPair]) -> String {
     )
 }
 
-/// Returns a JSON list; `setting` is the key of the second setting's name, `windows` those of the two windows.
+/// Returns a JSON list. `setting` is the key under which the second setting's name is written, `windows` are the keys
+/// of both windows; `allowed` as for [`text`].
 pub fn json(
     pairs: &[WindowPair],
     allowed: Option<OffsetStep>,

@@ -14,7 +14,7 @@ pub(super) fn window(steps: [OffsetStep; 2], ends: [FailureClass; 2]) -> Window 
     Window { nominal, negative_steps, positive_steps, end_negative, end_positive }
 }
 
-/// The closed form under a name.
+/// Returns a setting of this name with the fake engine.
 pub(super) fn setting(name: &str, search: Search) -> Setting {
     Setting { name: name.into(), rig: Arc::new(FakeRig::default()), search }
 }

@@ -8,7 +8,7 @@ pub use ran::*;
 
 use std::process::{Command, Stdio};
 
-/// The program with these arguments, not yet started; in the root of the workspace.
+/// Returns the command that runs the program with these arguments in the root of the workspace.
 pub fn command(arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_lab"));
     command.current_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/.."));

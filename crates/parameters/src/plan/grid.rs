@@ -1,10 +1,9 @@
-//! Adaptive tracing of outcomes over the plane of two parameters.
+//! Adaptive map of the outcomes of trials under two errors, such as shifts of the start along y and x.
 //!
-//! A coarse lattice is extended until the trials on its border fail, then its spacing is halved
-//! repeatedly. A point between two equal outcomes takes that outcome without a trial; a point
-//! between two different ones is simulated. Order: border of the inserting region; probes in
-//! uniform areas, to find islands; points next to the border whose outcome was inferred; other
-//! borders with the remaining trials.
+//! A coarse lattice of grid points is extended until its outermost trials fail, then its spacing is halved repeatedly,
+//! down to one grid step. A point between two equal outcomes takes that outcome without a trial; a point between two
+//! different ones is simulated. The trials are spent in this order: border of the inserting region; probes in uniform
+//! areas, to find islands; inferred points beside a trial with another outcome; borders between the other outcomes.
 
 use ask_tell::stream::stream;
 use rand::seq::SliceRandom;
@@ -22,12 +21,12 @@ const COARSE: i32 = 4;
 /// Number of lattice points above which the spacing is doubled.
 const MAX_COARSE: usize = 110;
 
-/// Grid point: steps along both axes from zero error.
+/// Grid point, in grid steps from zero error along both axes.
 pub type Node = [i32; 2];
 
 /// Outcome of a trial, inside or outside the region to trace.
 pub trait Traceable: Copy + PartialEq + Send + Sync {
-    /// Returns whether the outcome belongs to the traced region.
+    /// Returns whether the outcome belongs to the traced region: whether the trial inserts.
     fn inside(self) -> bool;
 }
 
@@ -46,7 +45,7 @@ pub struct TracedMap<'a, T> {
     pub low: Node,
     /// Highest corner.
     pub high: Node,
-    /// Outcome at every grid point from `low` to `high`.
+    /// The outcomes by grid point.
     pub nodes: BTreeMap<Node, NodeOutcome<T>>,
     /// Number of trials simulated.
     pub trials: usize,
@@ -57,7 +56,8 @@ pub struct TracedMap<'a, T> {
     measure: &'a (dyn Fn(Node) -> T + Sync),
 }
 
-/// Traces the inserting region around zero error, up to `limit` along either axis (a multiple of 8).
+/// Traces the inserting region around zero error, up to `limit`, in grid steps along each axis (multiples of 8, the
+/// largest spacing of the lattice).
 pub fn trace<T: Traceable>(limit: Node, measure: &(dyn Fn(Node) -> T + Sync)) -> TracedMap<'_, T> {
     let (low, high) = ([-2 * COARSE, -COARSE], [2 * COARSE, COARSE]);
     let nodes = BTreeMap::new();
@@ -71,7 +71,7 @@ pub fn trace<T: Traceable>(limit: Node, measure: &(dyn Fn(Node) -> T + Sync)) ->
         if probed {
             traced.verify();
         }
-        // Between the lattice points the region may extend further.
+        // A new point on the edge may insert although the lattice points beside it do not.
         if traced.extend(limit) {
             continue;
         }
@@ -90,7 +90,7 @@ fn differ<T: Traceable>(a: T, b: T) -> bool {
 }
 
 impl<T: Traceable> TracedMap<'_, T> {
-    /// Simulates the lattice, extended on each side until no trial there inserts. Returns whether
+    /// Simulates the lattice, extended on each side until no trial there inserts or a limit is reached. Returns whether
     /// it has grown.
     fn extend(&mut self, limit: Node) -> bool {
         let first = (self.low, self.high);
@@ -127,9 +127,8 @@ impl<T: Traceable> TracedMap<'_, T> {
         }
     }
 
-    /// Refines the lattice by repeatedly halving its spacing. Points between outcomes that differ
-    /// according to `differ` are simulated, up to `most` trials. Returns the finest spacing that was
-    /// completed.
+    /// Refines the lattice by repeatedly halving its spacing. Points between outcomes that differ according to `differ`
+    /// are simulated, up to `most` trials of the map. Returns the finest spacing that was completed, in grid steps.
     fn refine(&mut self, differ: fn(T, T) -> bool, most: usize) -> i32 {
         let (mut half, mut complete, mut traced) = (self.coarse / 2, true, self.coarse);
         while half >= 1 {
@@ -174,7 +173,7 @@ impl<T: Traceable> TracedMap<'_, T> {
         }
     }
 
-    /// Simulates inferred points whose neighbours are all inferred and equal to them.
+    /// Simulates randomly chosen inferred points whose neighbours are all inferred and equal to them.
     fn probe(&mut self) {
         let same = |own: T, other: &NodeOutcome<T>| !other.simulated && !differ(other.outcome, own);
         let mut uniform = self.inferred(|own, beside| beside.iter().all(|other| same(own, other)));
@@ -183,7 +182,7 @@ impl<T: Traceable> TracedMap<'_, T> {
         self.simulate(uniform, MAX_TRIALS);
     }
 
-    /// Simulates inferred points next to a trial with a different outcome, until none is left.
+    /// Simulates inferred points next to a trial with a different outcome, until none is left or the trials run out.
     fn verify(&mut self) {
         let against =
             |own: T, other: &NodeOutcome<T>| other.simulated && differ(other.outcome, own);
@@ -204,8 +203,8 @@ impl<T: Traceable> TracedMap<'_, T> {
         self.nodes.iter().filter(fits).map(|(node, _)| *node).collect()
     }
 
-    /// Simulates the points that have not been simulated; an evenly spaced subset if that would
-    /// exceed `most` trials. Returns whether all were simulated.
+    /// Simulates the points that have not been simulated; an evenly spaced subset if that would exceed `most` trials of
+    /// the map. Returns whether all were simulated.
     fn simulate(&mut self, mut wanted: Vec<Node>, most: usize) -> bool {
         wanted.retain(|&node| !self.simulated(node));
         let (all, room) = (wanted.len(), most.saturating_sub(self.trials));
@@ -223,7 +222,8 @@ impl<T: Traceable> TracedMap<'_, T> {
         self.nodes.get(&node).is_some_and(|found| found.simulated)
     }
 
-    /// Returns the lattice points at a spacing, ordered by the second axis, so that neighbours share a grasp.
+    /// Returns the lattice points at a spacing. They are ordered by the second axis, whose error needs a new grasp, so
+    /// that successive trials share one.
     fn lattice(&self, distance: i32) -> Vec<Node> {
         let along = |axis: usize| (self.low[axis]..=self.high[axis]).step_by(distance as usize);
         along(1).flat_map(|other| along(0).map(move |y| [y, other])).collect()

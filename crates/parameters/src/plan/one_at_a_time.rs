@@ -14,9 +14,11 @@ pub enum End {
     High,
 }
 
-/// Returns the result of `evaluate` at a bound of the parameter or, if that is infeasible, at the nearest feasible
-/// value, found by bisection; `number` is the current value in the files. `evaluate` returns `None` for an infeasible
-/// value.
+/// Returns the result of `evaluate` at a bound of the parameter or, if that is infeasible, at the farthest feasible
+/// step towards it, found by bisection; `None` if the current value is infeasible, too.
+///
+/// `number` is the current value in the files; a bound on the wrong side of it is replaced by it. `evaluate` returns
+/// `None` for an infeasible value.
 pub fn farthest<T>(
     parameter: &Parameter,
     number: f64,

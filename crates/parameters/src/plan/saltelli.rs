@@ -69,8 +69,8 @@ impl Sample {
         points
     }
 
-    /// Estimates the indices of each input from the values at [`Sample::points`], in their order;
-    /// `None` if the values do not vary.
+    /// Estimates the indices of each input from the values at [`Sample::points`], in their order; `None` if the
+    /// variance of the values is at most [`f64::EPSILON`].
     pub fn indices(&self, values: &[f64]) -> Option<Vec<Indices>> {
         let rows = self.a.len();
         let (of_a, rest) = values.split_at(rows);
@@ -102,7 +102,7 @@ fn variance(of_a: &[f64], of_b: &[f64], rows: &[usize]) -> f64 {
     Moments::of(rows.iter().flat_map(|&row| [of_a[row], of_b[row]])).sample_variance()
 }
 
-/// Computes the bootstrap interval of `statistic` over independent rows.
+/// Computes `statistic` over all rows, and its interval by resampling the rows.
 fn bootstrap(rows: usize, seed: u64, statistic: impl Fn(&[usize]) -> f64) -> Interval {
     let every: Vec<usize> = (0..rows).collect();
     let mut random = stream(seed, rows as u64, "sensitivity bootstrap");

@@ -20,10 +20,10 @@ use std::time::Instant;
 
 /// Seed of the streams that cells are drawn from.
 const SEED: u64 = 0;
-/// Infill, percent and degrees, of the finger that must insert from some start; otherwise the cell is drawn again.
+/// Infill, percent and degrees, of the middle finger: a cell in which it inserts from no start is drawn again.
 const MIDDLE: [f64; 2] = [20.0, 20.0];
 const MAX_DRAWS: u32 = 100;
-/// Names of the hidden values in the shipped priors, and their columns.
+/// Hidden values: names in the shipped priors, and columns of the tables.
 pub const HIDDEN: [(&str, &str); 5] = [
     ("friction plug-socket", "friction_plug_socket"),
     ("stiffness of the flange", "flange_stiffness_factor"),
@@ -32,7 +32,7 @@ pub const HIDDEN: [(&str, &str); 5] = [
     ("radius of the edges", "edge_radius_mm"),
 ];
 
-/// Cell with hidden values.
+/// Robot cell with parameter values that the identification does not use.
 pub struct HiddenCell<'a> {
     /// Number from 1; odd cells have the first task, even ones the second.
     pub number: u64,
@@ -41,7 +41,7 @@ pub struct HiddenCell<'a> {
     pub evaluator: &'a Evaluator,
     /// Task with the values of its file.
     pub template: &'a Template,
-    /// Priors of [`HIDDEN`] and the values drawn: factors, and the radius in mm.
+    /// Priors of [`HIDDEN`] and the drawn values: factors on the nominal ones, and the radius in mm.
     hidden: Vec<(Parameter, f64)>,
 }
 
@@ -64,13 +64,13 @@ impl<'a> HiddenCell<'a> {
         Err(Failure::running(format!("cell {number}: nothing inserts in {MAX_DRAWS} draws")))
     }
 
-    /// Returns a finger in the cell.
+    /// Returns the finger of a design, with task and robot of the cell.
     pub fn setup(&self, design: &Design) -> Result<Specimen, Failure> {
         let values: Vec<_> = self.hidden.iter().map(|(prior, value)| (prior, *value)).collect();
         self.evaluator.apply(self.template, (design, None), &values).map_err(Failure::input)
     }
 
-    /// Returns the hidden values in the units of the tables.
+    /// Returns the hidden values in the units of the columns; the flange's stiffness as a factor.
     pub fn shown(&self) -> impl Iterator<Item = f64> {
         let nominal = |prior: &Parameter| self.template.numbers.number(&prior.path).unwrap_or(1.0);
         self.hidden.iter().map(move |(prior, value)| nominal(prior) * value)
@@ -80,10 +80,11 @@ impl<'a> HiddenCell<'a> {
 /// Windows of a measured finger in a cell.
 pub struct FingerWindows {
     pub finger: Measurement,
-    /// Windows in MuJoCo, in our engine, and in our engine with the nominal cell, that of the files.
+    /// Windows in MuJoCo, in the engine `direct`, and in `direct` with the nominal cell, that of the files.
     windows: [Option<TaughtStart>; 3],
-    /// Whether the start that was taught in our engine fails in MuJoCo.
+    /// Whether the start that was taught in `direct` fails in MuJoCo, where another is then taught.
     taught_again: bool,
+    /// Duration of the simulations in MuJoCo.
     elapsed_s: f64,
 }
 
@@ -108,7 +109,7 @@ impl FingerWindows {
         Ok(FingerWindows { finger: *finger, windows, taught_again, elapsed_s })
     }
 
-    /// Returns the tolerable range in one of the three simulations, mm; 0 if nothing inserts.
+    /// Returns the tolerable range in a simulation, an index of `SIMULATIONS`, mm; 0 if no start inserts.
     pub fn range_mm(&self, simulation: usize) -> f64 {
         self.windows[simulation].as_ref().map_or(0.0, |taught| taught.window.range_mm())
     }
@@ -118,6 +119,7 @@ impl FingerWindows {
         self.windows[0].as_ref().map_or([0.0; 3], starts_mm)
     }
 
+    /// Returns the line of `truth.csv`.
     pub fn line(&self, cell: &HiddenCell<'_>) -> String {
         let Measurement { design, density_percent, direction_deg, .. } = self.finger;
         let shown = cell.shown().map(|value| format!("{value:.4},")).collect::<String>();
@@ -151,7 +153,8 @@ fn cells(taught: &TaughtStart) -> String {
     format!("{start},{negative},{positive},{},{below},{above}", window.range_mm())
 }
 
-/// Measures the window around a start that inserts: `near`, or else a taught one; returns `None` if none inserts.
+/// Determines the window around the start `near`, in grid steps, or, if that does not insert, around the taught start;
+/// `None` if no start inserts.
 pub fn window(
     specimen: &Specimen,
     engine: EngineKind,

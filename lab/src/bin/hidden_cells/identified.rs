@@ -1,4 +1,5 @@
-//! Identification of a hidden cell from its logs, judged by its hidden values and by the fingers not logged.
+//! Identification of a hidden cell from its logs, compared with its hidden values and with the windows of fingers that
+//! were not logged.
 
 use super::cell::{FingerWindows, HIDDEN, HiddenCell, window};
 use super::logs::LOGGED;
@@ -14,6 +15,7 @@ use insertion::trial::engine::EngineKind;
 use rayon::prelude::*;
 use std::path::Path;
 
+/// Returns the header of `cells.csv`: `_found` is an identified value, `_sd` its standard deviation.
 pub fn header() -> String {
     let hidden = HIDDEN.map(|(_, name)| format!("{name},{name}_found,{name}_sd,")).concat();
     format!(
@@ -21,8 +23,9 @@ pub fn header() -> String {
     )
 }
 
-/// Identifies a cell from the logs in a folder. Returns its hidden and identified values, and the mean error and
-/// rank correlation of the ranges of the fingers that were not logged, in the nominal and the identified cell.
+/// Identifies a cell from the logs in a folder. Returns its line of `cells.csv`: hidden and identified values, then
+/// mean absolute error and rank correlation with MuJoCo of the ranges of the fingers that were not logged, in the
+/// nominal and in the identified cell.
 pub fn line(
     cell: &HiddenCell<'_>,
     windows: &[FingerWindows],
@@ -45,7 +48,8 @@ pub fn line(
     for ((name, _), hidden) in HIDDEN.iter().zip(cell.shown()) {
         let estimate = values.iter().find(|(parameter, _)| parameter.name == *name);
         let sd = estimate.and_then(|(parameter, _)| parameter.sd);
-        // The priors of the identified robot have the flange's stiffness as a factor of 1.
+        // The identified stiffness is in the robot; its parameter is the remaining factor, 1, with a relative
+        // deviation.
         let (value, sd) = match *name {
             "stiffness of the flange" => {
                 let factor = robot.as_ref().and_then(flange_stiffness);

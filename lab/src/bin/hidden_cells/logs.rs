@@ -1,4 +1,4 @@
-//! Logs of attempts in hidden cells, with the errors of a real force sensor.
+//! Simulated logs of attempts in hidden cells, with the errors of a real force sensor.
 
 use super::cell::{FingerWindows, HiddenCell};
 use ask_tell::normal::StandardNormal;
@@ -19,17 +19,18 @@ use study::write_file;
 pub const LOGGED: [[f64; 2]; 2] = [[10.0, 0.0], [30.0, 0.0]];
 /// Time between two samples, s.
 const EVERY_S: f64 = 2e-3;
-/// Standard deviations of each axis, N: noise of a sample, bias, drift to the end of a log.
+/// Standard deviations along each axis, N: noise of a sample, bias, and linear drift until the end of a log.
 const NOISE_N: f64 = 0.5;
 const BIAS_N: f64 = 1.0;
 const DRIFT_N: f64 = 1.0;
 /// Mass of the tool on the sensor, kg.
 const TOOL_KG: f64 = 1.0;
-/// Frame of an upright robot, whose logs are in the task's frame already.
+/// Text of `frame.toml`: no rotation, since the logs are in the task's frame already, and the mass of the tool.
 const FRAME: &str =
     "origin_mm = [400.0, 0.0, 100.0]\naxis_angle_rad = [0.0, 0.0, 0.0]\ntool_mass_kg = 1.0\n";
 
-/// Writes the logs of a cell into a folder, with `runs.csv` and `frame.toml`.
+/// Writes the logs of a cell into a folder, with `runs.csv` and `frame.toml`: a friction probe and three attempts of
+/// each logged finger.
 pub fn write(
     cell: &HiddenCell<'_>,
     windows: &[FingerWindows],
@@ -45,6 +46,7 @@ pub fn write(
         let known = |one: &&FingerWindows| one.finger.infill() == [density, direction];
         let [start, negative, positive] =
             windows.iter().find(known).map_or([0.0; 3], FingerWindows::starts_mm);
+        // The probe, the taught start, 0.2 mm inside the negative end and 0.2 mm beyond the positive end.
         let offsets = [None, Some(start), Some(negative + 0.2), Some(positive + 0.2)];
         for (i, offset_mm) in offsets.into_iter().enumerate() {
             let (samples, outcome) = match offset_mm {
@@ -89,7 +91,7 @@ fn add_sensor_errors(log: &mut Log, cell: u64, number: u64) {
     }
 }
 
-/// Returns the rates of change by central differences, one-sided at both ends, 1/s.
+/// Returns the time derivatives, per second, by central differences, one-sided at both ends.
 fn rates(values: &[Vector3<f64>]) -> Vec<Vector3<f64>> {
     let rate = |i: usize| {
         let (a, b) = (i.saturating_sub(1), (i + 1).min(values.len() - 1));

@@ -1,8 +1,9 @@
-//! Tries identification on cells with hidden values: windows and logs of each are simulated in MuJoCo, the cell is
-//! identified from the logs and judged by its hidden values and by fingers that were not logged.
+//! Tests the identification of robot cells: windows and logs of cells with hidden parameter values are simulated in
+//! MuJoCo. Each cell is identified from its logs, and compared with the hidden values and with the windows of fingers
+//! that were not logged.
 //!
-//! Writes two tables: `truth.csv` (a line for each finger in a cell: its window in MuJoCo, in our engine, and in our
-//! engine with the nominal cell) and `cells.csv` (a line for each cell).
+//! Writes two tables: `truth.csv` (a line for each finger in a cell: its window in MuJoCo, in the engine `direct`, and
+//! in `direct` with the nominal cell) and `cells.csv` (a line for each cell).
 
 mod cell;
 mod identified;
@@ -21,7 +22,8 @@ use study::write_file;
 const TASKS: &str = "usb,ket8";
 /// Names of the three simulations of a window in `truth.csv`.
 const SIMULATIONS: [&str; 3] = ["truth", "direct", "nominal"];
-/// Columns of a simulation, each after its name. Ends are relative to the task's own start, not to the taught one.
+/// Columns of each simulation, prefixed with its name. Ends are relative to the task's own start, not to the taught
+/// one.
 const COLUMNS: [&str; 6] =
     ["start_mm", "negative_mm", "positive_mm", "range_mm", "failure_negative", "failure_positive"];
 

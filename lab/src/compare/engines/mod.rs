@@ -1,8 +1,8 @@
 //! Check T9 of `docs/notes/simulation.md`: the same trials in two engines.
 //!
-//! Two engines without common contact code should agree on the outcomes of the same scenes. Trials of
-//! the softest and the stiffest measured finger on every task start at fixed distances from both ends
-//! of the first engine's window, inside and outside, and in its middle.
+//! Two engines without common contact code should agree on the outcomes of the same trials. Trials of the softest and
+//! the stiffest measured finger on every task start at fixed distances inside and outside of both ends of the first
+//! engine's window, and in its middle.
 
 #[cfg(test)]
 mod tests;
@@ -18,9 +18,9 @@ use report::text_table;
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
 
-/// Least share of the trials on which the engines agree.
+/// Smallest accepted fraction of the trials on which the engines agree.
 pub const AGREEMENT: f64 = 0.9;
-/// Largest mean difference of the windows' ends, mm.
+/// Largest accepted mean difference of the windows' ends, mm.
 pub const END_DIFFERENCE_MM: f64 = 0.5;
 
 /// Returns the offsets of the trials about a window, grid steps; if `reduced`, a few far from the ends.
@@ -38,6 +38,7 @@ pub fn offsets(window: &Window, reduced: bool) -> Vec<OffsetStep> {
     all.into_iter().collect()
 }
 
+/// Outcomes of a trial in both engines.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TrialPair {
     pub subject: Subject,
@@ -45,7 +46,7 @@ pub struct TrialPair {
     /// Distance beyond the nearer end of the first engine's window, grid steps; negative inside.
     pub from_end: OffsetStep,
     pub outcomes: [Outcome; 2],
-    /// Distance of the two tips at the end, mm, if both inserted.
+    /// Distance between the final positions of the plug's tip, mm, if both inserted.
     pub tip_mm: Option<f64>,
 }
 
@@ -57,6 +58,7 @@ impl TrialPair {
     }
 }
 
+/// Result of check T9.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct CrossCheck {
     pub trials: Vec<TrialPair>,
@@ -64,7 +66,7 @@ pub struct CrossCheck {
 }
 
 impl CrossCheck {
-    /// Returns the share of the trials on which the engines agree, 0 to 1.
+    /// Returns the fraction of the trials on which the engines agree, 0 to 1.
     pub fn agreement(&self) -> f64 {
         self.trials.iter().filter(|pair| pair.agrees()).count() as f64 / self.trials.len() as f64
     }
@@ -80,7 +82,7 @@ impl CrossCheck {
     }
 }
 
-/// Compares the first two settings of every task; if `reduced`, in few trials and without windows.
+/// Compares the first two settings of every task; if `reduced`, by few trials and without the second window.
 pub fn run(tasks: &[TaskSettings], designs: &[Measurement], reduced: bool) -> CrossCheck {
     let results = each(tasks, designs, |subject, settings| match settings {
         [first, second, ..] => in_both(subject, [first, second], reduced),
@@ -91,7 +93,7 @@ pub fn run(tasks: &[TaskSettings], designs: &[Measurement], reduced: bool) -> Cr
     CrossCheck { trials: trials.concat(), windows: windows.concat() }
 }
 
-/// Compares a finger in both settings.
+/// Compares both settings by the trials of a finger.
 fn in_both(subject: &Subject, settings: [&Setting; 2], reduced: bool) -> CrossCheck {
     let reference = settings[0].evaluate(&subject.finger);
     let window = &reference.window;
@@ -112,7 +114,7 @@ fn in_both(subject: &Subject, settings: [&Setting; 2], reduced: bool) -> CrossCh
     CrossCheck { trials, windows: (!reduced).then(pair).into_iter().collect() }
 }
 
-/// Returns the distance of the tips at the end of a trial that both inserted, mm.
+/// Returns the distance between the final positions of the plug's tip, mm; `None` unless both inserted.
 fn tip_distance(trials: &[Trial; 2]) -> Option<f64> {
     let tip = |trial: &Trial| match trial.outcome {
         Outcome::Inserted => trial.phases.last().map(|end| end.tip_mm),
@@ -123,6 +125,7 @@ fn tip_distance(trials: &[Trial; 2]) -> Option<f64> {
     Some(square.sqrt())
 }
 
+/// Returns tables and verdicts for the terminal.
 pub fn text(check: &CrossCheck, [first, second]: [&str; 2]) -> String {
     let verdict = |met| if met { "met" } else { "MISSED" };
     let mut text = format!("T9: the same trials in {first} and {second}\n\n");

@@ -1,4 +1,4 @@
-//! Offsets of the trials and totals, on the closed form.
+//! Offsets of the trials and totals, with the fake engine.
 
 use super::*;
 use crate::compare::tests;
@@ -35,7 +35,7 @@ fn an_engine_agrees_with_itself() {
     assert_eq!((check.agreement(), check.end_difference_mm()), (1.0, Some(0.0)));
     assert!(check.passed());
     assert!(check.trials.iter().all(|pair| pair.tip_mm.is_none_or(|by| by == 0.0)));
-    // What is inside the window inserts, what is outside does not.
+    // Starts inside the window insert, others do not.
     let inside = |pair: &TrialPair| pair.from_end <= 0;
     let inserts = |pair: &TrialPair| pair.outcomes[0] == Outcome::Inserted;
     assert!(check.trials.iter().all(|pair| inside(pair) == inserts(pair)));
@@ -55,7 +55,7 @@ fn a_disagreement_is_counted_and_listed() {
         tip_mm: None,
     };
     let missed = Outcome::Failed(FailureClass::PlugMissed);
-    // Another failure class is no disagreement.
+    // Trials that fail in different classes agree.
     let trials = vec![trial(5, missed), trial(7, Outcome::Inserted)];
     let windows = WindowPair {
         subject: subject.clone(),

@@ -1,4 +1,4 @@
-//! Our tolerance windows beside the published ones.
+//! Comparison of our tolerance windows with the published ones.
 
 mod table;
 #[cfg(test)]
@@ -25,12 +25,13 @@ use insertion::trial::engine::EngineKind;
 use rayon::prelude::*;
 use serde::Serialize;
 
-/// Sources of a tolerable range: our simulation, the published simulation, the published experiments.
+/// Sources of a tolerable range (width of a tolerance window): our simulation, the published simulation, the published
+/// experiments.
 pub const SOURCES: [&str; 3] = ["ours", "simulation", "bench"];
 /// Compared sources, each with its reference, as indices of [`SOURCES`].
 pub const COMPARISONS: [[usize; 2]; 3] = [[0, 1], [0, 2], [1, 2]];
 
-/// Tolerable range and the failure classes at its ends.
+/// Tolerable range and the failure classes at its ends, from one source.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Reading {
     pub range_mm: Option<f64>,
@@ -38,6 +39,7 @@ pub struct Reading {
     pub failure_positive: Option<FailureClass>,
 }
 
+/// Results of a design on a task: our window, and the reading from each source.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DesignRow {
     pub design: Measurement,
@@ -52,6 +54,7 @@ impl DesignRow {
     }
 }
 
+/// Results of all designs on a task.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TaskTable {
     pub task: String,
@@ -71,7 +74,7 @@ impl TaskTable {
                     failure_positive: row.failure_positive,
                 })
             });
-            // A start that diverges has no range, one that fails a range of 0, and neither has ends.
+            // If the nominal start diverges, the range is unknown; if it fails, the range is 0. Neither has ends.
             let range_mm = (window.nominal != Outcome::Diverged).then(|| window.range_mm());
             let [failure_negative, failure_positive] = failures(&window);
             let ours = Reading { range_mm, failure_negative, failure_positive };
@@ -81,6 +84,7 @@ impl TaskTable {
         TaskTable { task: task.to_owned(), rows: windows.into_iter().map(row).collect() }
     }
 
+    /// Returns the agreement of each of [`COMPARISONS`].
     pub fn agreements(&self) -> [Agreement; 3] {
         COMPARISONS.map(|compared| Agreement::new(&self.rows, compared))
     }
@@ -91,28 +95,28 @@ impl TaskTable {
 pub struct Agreement {
     pub compared: &'static str,
     pub reference: &'static str,
-    /// Designs for which both give a range, over which the next four values are taken.
+    /// Number of designs with a range from both; the next four values are taken over these.
     pub designs: usize,
     /// Mean of `|range - reference|`, mm; `None` without designs.
     pub mean_absolute_error_mm: Option<f64>,
     /// Mean of `range - reference`, mm: an offset common to all designs.
     pub mean_error_mm: Option<f64>,
-    /// Mean of `|range - reference|` over the reference, percent.
+    /// Mean of `|range - reference| / reference`, percent.
     pub mean_deviation_percent: Option<f64>,
     /// Rank correlation, -1 to 1; see [`spearman`].
     pub spearman: Option<f64>,
-    /// Window ends at which both name the same failure class.
+    /// Number of window ends with the same failure class from both.
     pub matched_ends: usize,
-    /// Window ends for which the reference names a class.
+    /// Number of window ends with a failure class from the reference.
     pub ends: usize,
-    /// Failure match score, percent: the paper's, over both ends of all windows.
+    /// The paper's failure match score, percent: `matched_ends / ends`; `None` without ends.
     pub match_percent: Option<f64>,
 }
 
 impl Agreement {
     /// Compares a source with a reference, as indices of [`SOURCES`].
     ///
-    /// An end for which the source names no class counts as not matched.
+    /// An end without a class from the source counts as not matched.
     pub fn new(rows: &[DesignRow], [compared, reference]: [usize; 2]) -> Self {
         let both = |row: &DesignRow| row.readings[compared].zip(row.readings[reference]);
         let readings: Vec<_> = rows.iter().filter_map(both).collect();
@@ -151,7 +155,8 @@ pub fn deviation_percent(range: f64, reference: f64) -> f64 {
     100.0 * (range - reference).abs() / reference
 }
 
-/// Measures the windows of all designs, as stiff as measured, on all tasks, each about its task's start.
+/// Determines the windows of all designs, with their measured stiffness, on all tasks. By the rule of the task, a
+/// window is about the start in the task file or the taught start; if no start can be taught, about the former.
 pub fn windows(
     fingers: &FingerSource,
     robot: &Robot,

@@ -64,8 +64,8 @@ fn number(value: Option<f64>) -> String {
     value.map_or(String::new(), |v| format!("{:.1}", (v * 10.0).round() / 10.0 + 0.0))
 }
 
-/// Returns a Markdown table with a line for each task; a comparison is the mean absolute error of the range,
-/// Spearman's rank correlation, and the share of the window ends with the same failure class.
+/// Returns a Markdown table with a line for each task. A column compares two sources by the mean absolute error of the
+/// range, Spearman's rank correlation, and the percentage of the window ends with the same failure class.
 pub fn accuracy(tables: &[TaskTable]) -> String {
     let head = "| task | starts | ours - simulation | ours - bench | simulation - bench |\n\
                 | --- | --- | --- | --- | --- |\n";
@@ -79,7 +79,7 @@ pub fn accuracy(tables: &[TaskTable]) -> String {
     head.to_owned() + &tables.iter().map(line).collect::<String>()
 }
 
-/// Formats a comparison as `0.99 mm, +0.96, 100.0 %`, with `-` for an undefined value.
+/// Formats an agreement as `0.99 mm, +0.96, 100.0 %`, with `-` for an undefined value.
 fn words(found: Agreement) -> String {
     let value =
         |value: Option<f64>, words: &dyn Fn(f64) -> String| value.map_or("-".to_owned(), words);

@@ -1,4 +1,4 @@
-//! Tables of known windows.
+//! Tables of windows that are known in closed form or published.
 
 use super::table::CSV_HEADER;
 use super::*;
@@ -8,7 +8,7 @@ use insertion::evaluation::tolerance::{Search, evaluate};
 use insertion::task::finger::FingerModel;
 use insertion::trial::fake::FakeRig;
 
-/// Every measured design on a task, by the closed form.
+/// Returns the windows of every measured design on a task with the fake engine.
 fn table(task: &str) -> TaskTable {
     let measured = insertion::stiffness::designs();
     let window = |m: &Measurement| {

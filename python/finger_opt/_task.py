@@ -144,6 +144,7 @@ class Task(Fields):
         return f"<Task {self.name}: {self.description}>"
 
 
+_ACCEPTED = "a name, the path of a task file, or a Task"
 #: Task: a shipped name, the path of a task file, or a :class:`Task`.
 Given = Union[TaskName, str, os.PathLike[str], Task]
 
@@ -162,10 +163,15 @@ def sources(task: Given | Iterable[Given] | None) -> str | None:
             # Paths are not split, since they may contain commas.
             found.append(os.fspath(one))
         else:
-            raise TypeError(f"task: is {one!r}; accepted: a name, the path of a task file, or a Task")
+            raise TypeError(f"task: is {one!r}; accepted: {_ACCEPTED}")
     return "\0" + dumps(word(found))
 
 
 def listed(task: Given | Iterable[Given]) -> list[Given]:
     """Returns one or several tasks as a list."""
-    return [task] if isinstance(task, (str, os.PathLike, Task)) else list(task)
+    if isinstance(task, (str, os.PathLike, Task)):
+        return [task]
+    try:
+        return list(task)
+    except TypeError:
+        raise TypeError(f"task: is {task!r}; accepted: {_ACCEPTED}, or several") from None

@@ -66,7 +66,7 @@ impl Spread<'_> {
 impl<'a> Ties<'a> {
     pub(super) fn of(record: &'a StudyRecord, index: u64, measured: &[MeasuredFinger]) -> Self {
         let designs = record.equivalent_designs(index);
-        // The walk simulates more starts than the search, so its largest force is at least as large.
+        // The walk simulates more starts than the search, and usually finds a larger force.
         let walked = |found: &'a Recorded| {
             let mut walked = record.walked.iter().map(|walked| &walked.recorded);
             walked.find(|walked| walked.index == found.index).unwrap_or(found)

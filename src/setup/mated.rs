@@ -19,7 +19,7 @@ use study::write_file;
 
 /// Largest number of overlaps that are listed.
 const MAX_SHOWN: usize = 4;
-/// Names of the bodies of an [`Interference`].
+/// Names of the bodies of an [`Interference`] or a deviation.
 const BODIES: [&str; 2] = ["plug", "socket"];
 
 /// Task of a mated pair.
@@ -133,7 +133,9 @@ fn check_drawing(files: Files, made: &PairTask, closeup: &Path) -> Result<(), Fa
                 None => "lack a face of the drawing".to_owned(),
             };
             let at = at(off.place);
-            (files[body].to_owned(), format!("the convex parts {how} {at}, in the mated pose"))
+            let whose = BODIES[body];
+            let problem = format!("the convex parts of the {whose} {how} {at}, in the mated pose");
+            (files[body].to_owned(), problem)
         }
         (None, Some(off)) => {
             let [drawn, parts] = off.gaps.map(|gap| gap / MM);

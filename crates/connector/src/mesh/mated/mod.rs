@@ -20,8 +20,8 @@ use insertion::task::{Part, Solid, Task, geometry};
 use nalgebra::{Matrix3, Point3, Vector3};
 pub use overlap::{GAP, Interference};
 use reach::Reach;
-use verify::Drawn;
 pub use verify::{Deviation, TOLERANCE};
+use verify::{Drawn, worst};
 
 /// Size of the handle that is added to a plug without faces to hold: in x, between the jaws, and length, m.
 pub const HANDLE: [f64; 3] = [12.0 * MM, 10.0 * MM, 20.0 * MM];
@@ -178,8 +178,8 @@ pub fn task(pair: &Pair, name: &str, like: Option<&Task>, size: Option<[f64; 3]>
     PairTask { task, jaws, held, handle, rejected, interference, deviation, difference, closeup }
 }
 
-/// Returns the parts of plug and socket that the other body can touch, and the worst deviation of the plug (0) from its
-/// drawing or, if there is none, that of the socket (1).
+/// Returns the parts of plug (0) and socket (1) that the other body can touch, and the worst deviation of either from
+/// its drawing.
 fn skins(placed: &AlignedPair, depth: f64) -> ([Vec<Part>; 2], Option<(usize, Deviation)>) {
     let mated: Vec<Triangle> =
         placed.plug.iter().map(|t| t.map(|p| p - Vector3::z() * depth)).collect();
@@ -188,18 +188,16 @@ fn skins(placed: &AlignedPair, depth: f64) -> ([Vec<Part>; 2], Option<(usize, De
         || checked_skin("plug", &mated, |face, normal| reach.of_plug(face, normal)),
         || checked_skin("socket", &placed.socket, |face, normal| reach.of_socket(face, normal)),
     );
-    let worst = off.map(|off| (0, off)).or(its.map(|off| (1, off)));
     let up = |part: Part| Part { solid: raised(part.solid, depth), ..part };
-    ([plug.into_iter().map(up).collect(), socket], worst)
+    ([plug.into_iter().map(up).collect(), socket], worst([off, its]))
 }
 
-/// Returns the parts for the faces that can be touched, and the part that protrudes most from the drawing or, if none
-/// does, a face without a part.
+/// Returns the parts for the faces that can be touched, and their deviations from the drawing.
 fn checked_skin(
     name: &str,
     triangles: &[Triangle],
     reached: impl Fn(&Triangle, &Vector3<f64>) -> bool,
-) -> (Vec<Part>, Option<Deviation>) {
+) -> (Vec<Part>, Vec<Deviation>) {
     let drawn = Drawn::new(triangles);
     let solids = skin(triangles, &reached, |solid| drawn.trimmed(solid));
     let parts = (1..).zip(solids).map(|(i, solid)| draft::part(&format!("{name} {i}"), solid));
@@ -208,9 +206,7 @@ fn checked_skin(
     let kept = triangles.iter().filter(|t| normal(t).is_some_and(|normal| reached(t, &normal)));
     let kept: Vec<Triangle> = kept.copied().collect();
     let found = drawn.deviations(&kept, &parts);
-    let far = |off: &Deviation| off.out.unwrap_or(0.0);
-    let worst = found.into_iter().max_by(|a, b| far(a).total_cmp(&far(b)));
-    (parts, worst)
+    (parts, found)
 }
 
 /// Moves a solid along z, m.

@@ -32,11 +32,20 @@ pub struct Deviation {
     pub out: Option<f64>,
 }
 
+/// Returns the deviation of the part that protrudes most from the drawing of its body (0 plug, 1 socket) or, if none
+/// does, a face without a part; of equal ones, that of the plug.
+pub(super) fn worst([plug, socket]: [Vec<Deviation>; 2]) -> Option<(usize, Deviation)> {
+    let far = |(_, off): &(usize, Deviation)| off.out.unwrap_or(0.0);
+    let plug = plug.into_iter().map(|off| (0, off));
+    let all = socket.into_iter().map(|off| (1, off)).chain(plug);
+    all.max_by(|a, b| far(a).total_cmp(&far(b)))
+}
+
 /// Drawn body with which parts are compared.
 pub struct Drawn<'a> {
     /// Triangles with outward normals, m.
     triangles: &'a [Triangle],
-    /// The same triangles, mm; `None` if parry rejects them: then no part counts as protruding.
+    /// The same triangles, mm; `None` if parry rejects them: then every part counts as protruding.
     mesh: Option<TriMesh>,
 }
 
@@ -51,8 +60,9 @@ impl<'a> Drawn<'a> {
     /// Returns the nearest point of the surface and its distance, m, for a place outside the body by more than the
     /// tolerance, and `None` for any other place.
     fn outside(&self, place: &Point3<f64>) -> Option<(Point3<f64>, f64)> {
+        let Some(mesh) = &self.mesh else { return Some((*place, f64::INFINITY)) };
         let point: Vector = (place.coords / MM).into();
-        let near = self.mesh.as_ref()?.project_local_point(point, false).point;
+        let near = mesh.project_local_point(point, false).point;
         let distance = (near - point).length() * MM;
         (distance > TOLERANCE && winding(self.triangles, place) < 0.5)
             .then(|| (Point3::from(Vector3::from(near) * MM), distance))
@@ -153,6 +163,25 @@ mod tests {
         let bare = Drawn::new(&drawn).deviations(&drawn, &[short]);
         assert!(!bare.is_empty() && bare.iter().all(|d| d.out.is_none() && d.place.z > 3.9 * MM));
     }
+
+    #[test]
+    fn the_larger_deviation_of_two_bodies_is_the_worst() {
+        let off = |x: f64, out: Option<f64>| Deviation { place: Point3::new(x, 0.0, 0.0), out };
+        let (bare, near, far) = (off(1.0, None), off(2.0, Some(0.03)), off(3.0, Some(0.05)));
+        assert_eq!(worst([vec![near, bare], vec![far]]), Some((1, far)));
+        assert_eq!(worst([vec![bare], vec![near]]), Some((1, near)));
+        assert_eq!(worst([vec![far], vec![near, far]]), Some((0, far)));
+        assert_eq!(worst([vec![], vec![bare]]), Some((1, bare)));
+        assert_eq!(worst([vec![], vec![]]), None);
+    }
+
+    #[test]
+    fn parts_without_a_drawing_protrude() {
+        let whole = part([0.0; 3], [4.0; 3]);
+        assert_eq!(Drawn::new(&[]).trimmed(whole.solid.clone()), None);
+        assert!(Drawn::new(&[]).deviations(&[], &[whole])[0].out.is_some());
+    }
+
     /// Off the grid, the rounding in files could change the solid or make it invalid.
     #[test]
     fn trimmed_corners_are_on_the_grid_of_files() {

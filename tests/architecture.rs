@@ -44,3 +44,10 @@ fn elementary_functions_and_draws_are_not_the_systems() {
     }
     assert_eq!(found, Vec::<String>::new(), "use libm, or ask_tell::normal");
 }
+
+#[test]
+fn helpers_do_not_depend_on_commands() {
+    let mut helpers = files(&root("src/setup"));
+    helpers.retain(|path| read(path).contains("commands::"));
+    assert_eq!(helpers, Vec::<std::path::PathBuf>::new());
+}

@@ -9,6 +9,7 @@ use crate::setup::film::FilmRequest;
 use crate::setup::finger::{ChosenFinger, FingerRequest};
 use crate::setup::repeat::RepeatRequest;
 use crate::setup::request::SetupRequest;
+use crate::setup::task::outcome_json;
 use crate::setup::words::{parse_at_least_0, parse_number};
 use calibration::identify::curves::STEP_S;
 use calibration::identify::log::of_samples;
@@ -182,18 +183,6 @@ fn series(samples: &[Sample]) -> Value {
         "tilt_deg": each(|sample| json!(sample.tilt_deg)),
         "force_n": each(|sample| json!(sample.force_n)),
         "slip_mm": each(|sample| json!(sample.slip_mm)),
-    })
-}
-
-/// Returns the outcome of a trial as JSON.
-pub(crate) fn outcome_json(trial: &Trial) -> Value {
-    json!({
-        "outcome": trial.outcome.word(),
-        "failure": trial.outcome.failure(),
-        "depth_mm": trial.depth_mm,
-        "tilt_deg": trial.tilt_deg,
-        "peak_force_n": trial.peak_force_n,
-        "slip_mm": trial.slip_mm,
     })
 }
 

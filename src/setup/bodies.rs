@@ -5,8 +5,9 @@ use crate::context::Context;
 use crate::failure::Failure;
 use crate::python::Format;
 use connector::body::{extent, width};
+use connector::draft::Size;
 use connector::mating::plugs;
-use connector::mesh::axes::{Unit, value};
+use connector::mesh::axes::{Along, Jaws, Unit, value};
 use connector::mesh::{Body, Files, Triangle, is_step, pick, read, shells};
 use input::units::MM;
 use std::path::{Path, PathBuf};
@@ -27,9 +28,9 @@ const STEP: Format = Format {
     otherwise: "or export STL",
 };
 
-/// Files and bodies of a plug and its socket.
+/// Plug and socket, what is known of their mate, and the task to make of them.
 #[derive(Debug, Clone, clap::Args)]
-pub struct PartsRequest {
+pub struct PairRequest {
     /// Mesh of plug and socket in their mated pose; the plug is the part that can be withdrawn
     #[arg(conflicts_with_all = ["plug", "socket"])]
     pub assembly: Option<PathBuf>,
@@ -49,9 +50,33 @@ pub struct PartsRequest {
     /// Unit of both files [default: the one that makes plug and clearance plausible]
     #[arg(long, value_enum)]
     pub unit: Option<Unit>,
+    /// Direction of insertion in the socket's file [default: the one in which most walls of the two engage]
+    #[arg(long, value_name = "AXIS", value_enum, allow_hyphen_values = true)]
+    pub insert_along: Option<Along>,
+    /// Axis of the socket's file along which the jaws close [default: the one across which the plug has two parallel
+    /// faces for the pads]
+    #[arg(long, value_name = "AXIS", value_enum)]
+    pub jaws: Option<Jaws>,
+    /// Task for grip force, friction, fingers, limits and strategy
+    #[arg(long, value_name = "T")]
+    pub like: Option<String>,
+    /// Without effect, since the parts are exact within 0.02 mm
+    #[arg(long, hide = true, value_name = "N", default_value_t = 64,
+          value_parser = clap::value_parser!(u32).range(8..=1000))]
+    pub resolution: u32,
+    /// Handle on a plug that has no faces to grip, width between the jaws x height x length in mm
+    /// [default: 10x12x20 where one is needed]
+    #[arg(long, value_name = "WxHxL")]
+    pub body: Option<Size>,
+    /// Depth to be reached in a through hole, mm [default: the depth over which plug and socket engage]
+    #[arg(long, value_name = "MM")]
+    pub depth_mm: Option<f64>,
+    /// File to write [default: the plug's name with .toml]
+    #[arg(long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
 }
 
-impl PartsRequest {
+impl PairRequest {
     /// Returns the file of the plug.
     pub fn plug(&self) -> &Path {
         // clap requires one of the two.
@@ -62,6 +87,19 @@ impl PartsRequest {
     /// Returns the file of the socket.
     pub fn socket(&self) -> &Path {
         self.socket.as_ref().map_or(self.plug(), PathBuf::as_path)
+    }
+
+    /// Returns the file to write.
+    pub fn out(&self) -> PathBuf {
+        self.out.clone().unwrap_or_else(|| {
+            let stem = self.plug().file_stem().unwrap_or_default();
+            PathBuf::from(stem).with_extension("toml")
+        })
+    }
+
+    /// Returns the name of the task.
+    pub fn name(&self) -> String {
+        self.out().file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default()
     }
 }
 
@@ -79,11 +117,7 @@ pub struct Parts {
 ///
 /// # Errors
 /// If a file cannot be read or lacks a named body, or if the bodies of the plug are unknown.
-pub fn parts(
-    files: Files,
-    request: &PartsRequest,
-    context: &Context<'_>,
-) -> Result<Parts, Failure> {
+pub fn parts(files: Files, request: &PairRequest, context: &Context<'_>) -> Result<Parts, Failure> {
     let (plug, plug_step) = bodies(request.plug(), files[0], context)?;
     let both = request.socket() == request.plug();
     let (socket, socket_step) =

@@ -1,7 +1,6 @@
 //! Creation of a task from the meshes of a plug and its socket, by their mated pose.
 
-use super::bodies::Parts;
-use crate::commands::task::import::Request;
+use super::bodies::{PairRequest, Parts};
 use crate::context::{Context, not_stopped};
 use crate::failure::Failure;
 use clap::ValueEnum;
@@ -61,7 +60,7 @@ pub fn left_out_json(of: &Interference) -> Value {
 pub fn mated(
     files: Files,
     parts: Parts,
-    request: &Request,
+    request: &PairRequest,
     like: Option<&Task>,
     context: &Context<'_>,
 ) -> Result<MatedTask, Failure> {
@@ -72,7 +71,7 @@ pub fn mated(
         triangles.map(|of| of.iter().map(|t| t.map(|p| p * unit.metres())).collect());
     let (plug, plug_inward) = oriented(files[0], triangles[0], unit, context);
     let (socket, socket_inward) = oriented(files[1], triangles[1], unit, context);
-    if request.parts.assembly.is_none() {
+    if request.assembly.is_none() {
         context.note("looking for the mated pose");
     }
     let mate = mate(files, [&plug, &socket], request, context, &mut findings)?;
@@ -235,11 +234,11 @@ fn described(
 fn mate(
     files: Files,
     [plug, socket]: [&[Triangle]; 2],
-    request: &Request,
+    request: &PairRequest,
     context: &Context<'_>,
     findings: &mut Vec<(&'static str, String)>,
 ) -> Result<Mate, Failure> {
-    let found = match request.parts.assembly.is_some() {
+    let found = match request.assembly.is_some() {
         true => assembled(plug, socket).map(|mate| MatingResult { mates: vec![mate], copies: 1 }),
         false => mates(plug, socket, context.stop),
     };

@@ -3,7 +3,6 @@
 use super::files::{find, robot};
 use super::request::TaskSource;
 use super::tune::{self, tune_until_success};
-use crate::commands::trial::outcome_json;
 use crate::context::not_stopped;
 use crate::failure::Failure;
 use connector::check::{Problem, problems};
@@ -124,6 +123,18 @@ impl TaskCheck {
             _ => Ok(None),
         }
     }
+}
+
+/// Returns the outcome of a trial as JSON.
+pub(crate) fn outcome_json(trial: &Trial) -> Value {
+    json!({
+        "outcome": trial.outcome.word(),
+        "failure": trial.outcome.failure(),
+        "depth_mm": trial.depth_mm,
+        "tilt_deg": trial.tilt_deg,
+        "peak_force_n": trial.peak_force_n,
+        "slip_mm": trial.slip_mm,
+    })
 }
 
 /// Returns the measured finger of medium stiffness and its trial at the nominal start.

@@ -4,15 +4,14 @@ use crate::command::{self, Output};
 use crate::context::{Context, not_stopped};
 use crate::failure::{Failure, within};
 use crate::layout::wrapped;
-use crate::setup::bodies::{PartsRequest, parts};
+use crate::setup::bodies::{PairRequest, parts};
 use crate::setup::files::check_is_new;
 use crate::setup::mated::{MatedTask, left_out_json, mated};
 use crate::setup::request::DEFAULT_ROBOT;
 use crate::setup::task::{TaskCheck, TaskFile, read_task};
 use crate::setup::tune::{brief, chosen, tune_new};
 use connector::body::width;
-use connector::draft::Size;
-use connector::mesh::axes::{Along, Jaws, value};
+use connector::mesh::axes::value;
 use connector::mesh::mated::PairTask;
 use connector::tune::Tuned;
 use connector::write::{self, Notes};
@@ -21,7 +20,7 @@ use input::units::MM;
 use insertion::task::parts_file::{PartsFile, joined, sha256};
 use insertion::trial::engine::EngineKind;
 use serde_json::{Value, json};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use study::write_file;
 
 /// Largest number of parts that are written into the task file itself.
@@ -42,33 +41,9 @@ const MAX_INLINE: usize = 30;
     after_help = "Example: optimize task import --plug plug.stl --socket socket.stl --out mine.toml"
 )]
 pub struct Request {
-    /// Files and bodies of plug and socket.
+    /// Plug, socket and their mate.
     #[command(flatten)]
-    pub parts: PartsRequest,
-    /// Direction of insertion in the socket's file [default: the one in which most walls of the two engage]
-    #[arg(long, value_name = "AXIS", value_enum, allow_hyphen_values = true)]
-    pub insert_along: Option<Along>,
-    /// Axis of the socket's file along which the jaws close [default: the one across which the plug has two parallel
-    /// faces for the pads]
-    #[arg(long, value_name = "AXIS", value_enum)]
-    pub jaws: Option<Jaws>,
-    /// Task for grip force, friction, fingers, limits and strategy
-    #[arg(long, value_name = "T")]
-    pub like: Option<String>,
-    /// Without effect, since the parts are exact within 0.02 mm
-    #[arg(long, hide = true, value_name = "N", default_value_t = 64,
-          value_parser = clap::value_parser!(u32).range(8..=1000))]
-    pub resolution: u32,
-    /// Handle on a plug that has no faces to grip, width between the jaws x height x length in mm
-    /// [default: 10x12x20 where one is needed]
-    #[arg(long, value_name = "WxHxL")]
-    pub body: Option<Size>,
-    /// Depth to be reached in a through hole, mm [default: the depth over which plug and socket engage]
-    #[arg(long, value_name = "MM")]
-    pub depth_mm: Option<f64>,
-    /// File to write [default: the plug's name with .toml]
-    #[arg(long, value_name = "FILE")]
-    pub out: Option<PathBuf>,
+    pub pair: PairRequest,
     /// Contact engine for the nominal start
     #[arg(long, value_enum, default_value_t)]
     pub engine: EngineKind,
@@ -80,8 +55,8 @@ pub struct Request {
 impl command::Request for Request {
     fn run(&self, context: &Context<'_>) -> Result<Output, Failure> {
         let stop = context.stop;
-        let out = &self.out();
-        within("--depth-mm", self.depth_mm, &(0.4..=300.0))?;
+        let out = &self.pair.out();
+        within("--depth-mm", self.pair.depth_mm, &(0.4..=300.0))?;
         check_is_new(out)?;
         let mut mated = self.mated_task(context)?;
         not_stopped(stop)?;
@@ -100,16 +75,8 @@ impl Request {
     /// Returns the names of plug and socket in messages.
     fn names(&self) -> [String; 2] {
         let paths =
-            || [self.parts.plug(), self.parts.socket()].map(|path| path.display().to_string());
+            || [self.pair.plug(), self.pair.socket()].map(|path| path.display().to_string());
         <[String; 2]>::try_from(self.names.clone()).unwrap_or_else(|_| paths())
-    }
-
-    /// Returns the file to write.
-    pub(crate) fn out(&self) -> PathBuf {
-        self.out.clone().unwrap_or_else(|| {
-            let stem = self.parts.plug().file_stem().unwrap_or_default();
-            PathBuf::from(stem).with_extension("toml")
-        })
     }
 
     /// Writes the task; more parts than [`MAX_INLINE`] go to a separate file beside it.
@@ -134,19 +101,15 @@ impl Request {
 
     /// Returns the task made of the shapes in their mated pose.
     fn mated_task(&self, context: &Context<'_>) -> Result<MatedTask, Failure> {
-        let like = self.like.as_deref().map(read_task).transpose()?;
+        let like = self.pair.like.as_deref().map(read_task).transpose()?;
         let names = self.names();
         let files = names.each_ref().map(String::as_str);
-        let parts = parts(files, &self.parts, context)?;
+        let parts = parts(files, &self.pair, context)?;
         not_stopped(context.stop)?;
-        let mut task = mated(files, parts, self, like.as_ref().map(|like| &like.task), context)?;
+        let mut task =
+            mated(files, parts, &self.pair, like.as_ref().map(|like| &like.task), context)?;
         task.made.task.description = description(&names);
         Ok(task)
-    }
-
-    /// Returns the name of the task.
-    pub(crate) fn name(&self) -> String {
-        self.out().file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default()
     }
 
     fn notes(&self, MatedTask { made, unit, along, jaws, .. }: &MatedTask) -> Notes {

@@ -83,7 +83,8 @@ fn header() -> [Vec<Block>; 2] {
     [plug, socket]
 }
 
-/// Stamped shell of 0.3 mm with a seam and two windows about a tongue, and a plug with a slot for it.
+/// Stamped shell of 0.3 mm with a seam and two windows about a tongue, and a plug with a slot for it, whose cable boot is
+/// narrower than its body.
 fn shell() -> [Vec<Block>; 2] {
     let z = [0.0, 5.0];
     // The side at +y has a seam of 0.1 mm, the one at -y two windows.
@@ -103,6 +104,7 @@ fn shell() -> [Vec<Block>; 2] {
         frame([3.2, 8.9], [0.8, 6.8], [0.0, 4.8]),
         vec![block([-1.6, 1.6], [-4.45, 4.45], [4.8, 12.0])],
         vec![block([-3.0, 3.0], [-5.0, 5.0], [12.0, 24.0])],
+        vec![block([-2.0, 2.0], [-1.2, 1.2], [24.0, 34.0])],
     ];
     [plug.concat(), socket]
 }
@@ -261,7 +263,12 @@ fn a_header_inserts_and_misses_by_one_pitch() {
 
 #[test]
 fn a_shell_with_a_seam_goes_about_its_tongue() {
-    inserts(&Studies::new(), "shell", shell(), [0.1, 0.1]);
+    let found = inserts(&Studies::new(), "shell", shell(), [0.1, 0.1]);
+    // Held by its body, across the second axis: the boot leaves no room for the roofs beside the wider faces.
+    assert_eq!(found["jaws"], "y", "{found}");
+    let held = [0, 1].map(|side| found["body_mm"][side].as_f64().unwrap());
+    assert!((held[0] - 10.0).abs() < 1e-6 && (held[1] - 6.0).abs() < 1e-6, "{found}");
+    assert!(found["found"].to_string().contains("not held larger faces 6.0 mm apart"), "{found}");
 }
 
 /// File of bodies that are called by their number, from 1.

@@ -328,6 +328,13 @@ fn an_extruded_pair_is_imported_as_it_was_drawn() {
     for (i, drawn) in [12.0, 8.0, 18.0].into_iter().enumerate() {
         assert!((found["body_mm"][i].as_f64().unwrap() - drawn).abs() < 0.2, "{found}");
     }
+    // Depths are counted from a height inside the chamfer.
+    let inside = "0.13 mm below the socket's top";
+    assert!(found["found"].to_string().contains(&format!("z = 0 is {inside}")), "{found}");
+    let written = studies.read("keyed.toml");
+    for words in [&format!("opening, {inside};"), "`grip` is a block for the pads"] {
+        assert!(written.contains(words), "{words} in {written}");
+    }
     assert_eq!(found["check"]["problems"].as_array().map(Vec::len), Some(0), "{found}");
     assert!(number(&found["tuned"], "least_range_mm") > 3.0, "{}", found["tuned"]);
 }
@@ -371,7 +378,9 @@ fn a_loose_plug_finds_its_seat() {
         format!("task import --json --plug {plug} --socket {socket} --like {like} --out {out}");
     let found = optimize_line(&line).json();
     let said = found["found"].to_string();
-    assert!(said.contains("mate 12.6 mm"), "{said}");
+    for words in ["mate 12.57 mm", "z = 0 is on the socket's top"] {
+        assert!(said.contains(words), "{words} in {said}");
+    }
     assert!((number(&found, "clearance_mm") - 3.0).abs() < 0.1, "{found}");
     // Its mass is that of its own shape; friction is that of the other task.
     let (made, usb) = (studies.read("loose.toml"), Task::parse(USB, "usb").unwrap());

@@ -162,6 +162,15 @@ fn check_drawing(files: Files, made: &PairTask, closeup: &Path) -> Result<(), Fa
     Err(Failure::in_file(file, problem))
 }
 
+/// Describes the height of the task's origin, from which depths are counted: that of the plug's tip when the socket
+/// begins to enclose it, inside a chamfer below the top.
+pub fn origin(made: &PairTask) -> String {
+    match made.top / MM {
+        ..0.005 => "on the socket's top".to_owned(),
+        top_mm => format!("{top_mm:.2} mm below the socket's top"),
+    }
+}
+
 /// Returns findings about the mate of a plug of this length along the axis, with this depth to be reached, m, and the
 /// grip.
 fn described(
@@ -173,10 +182,10 @@ fn described(
     let depth = mate.engaged_m / MM;
     let [long, needed] = lengths.map(|length| length / MM);
     let engaged = match depth <= long {
-        true => format!("{depth:.1} mm of the plug's {long:.1} mm engage"),
-        false => format!("the plug of {long:.1} mm goes {depth:.1} mm along a post"),
+        true => format!("{depth:.2} mm of the plug's {long:.2} mm engage"),
+        false => format!("the plug of {long:.2} mm goes {depth:.2} mm along a post"),
     };
-    let mut findings = vec![("mate", engaged)];
+    let mut findings = vec![("mate", format!("{engaged}; z = 0 is {}", origin(made)))];
     if mate.through {
         findings
             .push(("through", format!("nothing stops the plug: {needed:.2} mm must be reached")));

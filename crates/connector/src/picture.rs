@@ -208,7 +208,7 @@ impl<'a> Picture<'a> {
         let steps = steps.collect::<Vec<_>>().join(", ");
         let lines = [
             format!(
-                "clearance (opening minus plug): {x:.2} mm in x, {y:.2} mm in y; upright the plug goes \
+                "clearance (opening minus plug): {x:.3} mm in x, {y:.3} mm in y; upright the plug goes \
                  {seat:.2} mm deep (dashed), success at {success:.2} mm"
             ),
             format!("blue: commanded path of the tip's lower edge: {steps}"),
@@ -217,5 +217,18 @@ impl<'a> Picture<'a> {
         for (i, line) in lines.iter().enumerate() {
             drawing.text(Point2::new(10.0, top + 20.0 * i as f64), line, FONT);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use input::shipped::TASKS;
+
+    #[test]
+    fn clearances_are_written_to_a_micrometre() {
+        let usb = TASKS.iter().find(|file| file.name == "usb").unwrap();
+        let svg = svg(&Task::parse(usb.text, usb.file).unwrap());
+        assert!(svg.contains("3.070 mm in x, 3.000 mm in y"), "{svg}");
     }
 }

@@ -15,6 +15,8 @@ use nalgebra::{Point3, Vector3};
 pub struct Notes {
     /// Lines of the comment at the top.
     pub head: Vec<String>,
+    /// Height of the origin; `None` if it is on the socket's top.
+    pub origin: Option<String>,
     /// Separate file of the parts; `None` if the task file contains them.
     pub parts: Option<PartsFile>,
     /// Whether parts that overlap, such as contact springs, were left out.
@@ -45,15 +47,16 @@ pub fn task(task: &Task, notes: &Notes) -> String {
         ],
     };
     let [x, y] = task.opening.map(pair);
+    let origin = notes.origin.as_deref().unwrap_or("on the socket's top");
     let mut out = format!(
         "{head}# Every key, with its unit and how to choose it: docs/guide/tasks.md.\n\
-         # Frame: origin in the middle of the opening, on the socket's top; z out of the socket; y the\n\
+         # Frame: origin in the middle of the opening, {origin}; z out of the socket; y the\n\
          # direction in which the jaws close and the start is shifted. Lengths in mm.\n\n\
          name = {name}\ndescription = {description}\n{turn}\n\
          [plug]\n# Assumed: {DENSITY} kg/m3. Weigh yours.\nmass_g = {}\n\n{plug}\
-         [socket]\n# From, to of the opening on the top, between the walls below.\n\
+         [socket]\n# From, to of the opening, between the walls below z = 0.\n\
          opening_x_mm = {x}\nopening_y_mm = {y}\n\n{socket}{}{}\
-         [success]\n# Judged at rest after the push: tip this deep below the top, axis this upright.\n\
+         [success]\n# Judged at rest after the push: tip this deep below z = 0, axis this upright.\n\
          depth_mm = {}\ntilt_deg = {}\n",
         round(task.plug.mass / GRAM, 100.0),
         grip(task),

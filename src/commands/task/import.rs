@@ -6,7 +6,7 @@ use crate::failure::{Failure, within};
 use crate::layout::wrapped;
 use crate::setup::bodies::{PairRequest, parts};
 use crate::setup::files::check_is_new;
-use crate::setup::mated::{MatedTask, left_out_json, mated};
+use crate::setup::mated::{MatedTask, left_out_json, mated, origin};
 use crate::setup::request::DEFAULT_ROBOT;
 use crate::setup::task::{TaskCheck, TaskFile, read_task};
 use crate::setup::tune::{brief, chosen, tune_new};
@@ -118,8 +118,13 @@ impl Request {
         let head = format!(
             "Imported from {plug} and {socket}, in {unit}, inserted along {along}, jaws along {jaws}."
         );
-        let head = vec![head.replace(['\n', '\r'], " ")];
-        Notes { head, parts: None, left_out: made.interference.iter().any(|of| !of.cut_back) }
+        let held = made.task.plug.parts.last().map_or("", |part| &part.name);
+        let held = format!(
+            "The plug's part `{held}` is a block for the pads, not a shape of the drawing."
+        );
+        let head = vec![head.replace(['\n', '\r'], " "), held];
+        let left_out = made.interference.iter().any(|of| !of.cut_back);
+        Notes { head, origin: Some(origin(made)), parts: None, left_out }
     }
 }
 
@@ -163,7 +168,7 @@ fn json(mated: &MatedTask, tuned: Option<&Tuned>, checked: &TaskCheck) -> Value 
     })
 }
 
-/// Returns the body that the fingers hold: width between the jaws, height in x, length above the seated socket.
+/// Returns the body that the fingers hold: width between the jaws, height in x, length above z = 0 when seated.
 fn body_mm(made: &PairTask) -> [f64; 3] {
     let grip = &made.task.grip;
     [width(grip.faces_y), made.held, grip.shoulder_z + made.mated_z()].map(|side| side / MM)
@@ -182,7 +187,8 @@ fn text(
     let mut text = format!(
         "written       {out}\nplug          {plug}, {plug_parts} convex parts: held by the fingers\n\
          socket        {socket}, {socket_parts} convex parts: fixed\n\
-         clearance     {clearance_y_mm:.2} mm in y, {clearance_x_mm:.2} in x; body {wide:.1} x {high:.1} x {long:.1} mm\n"
+         clearance     {clearance_y_mm:.3} mm in y, {clearance_x_mm:.3} mm in x\n\
+         body          {wide:.1} x {high:.1} mm between the pads (y, x), up to z = {long:.1} mm when seated\n"
     );
     for (what, why) in &mated.findings {
         text.push_str(&format!("{what:<14}{why}\n"));

@@ -57,6 +57,8 @@ pub struct PairTask {
     pub jaws: Vector3<f64>,
     /// Width in x of the part between the pads, m.
     pub held: f64,
+    /// Height of the highest point of the socket, task frame, m.
+    pub top: f64,
     /// Whether the plug is held by a handle that its drawing lacks.
     pub handle: bool,
     /// Larger faces that the fingers cannot hold.
@@ -124,10 +126,10 @@ pub fn task(pair: &Pair, name: &str, like: Option<&Task>, size: Option<[f64; 3]>
     // Rounded to the grid of files, so that corners stay on it.
     let pair = &Pair { engaged: snap(pair.engaged), ..*pair };
     let first = pair.jaws.first().copied().unwrap_or_else(Vector3::y);
-    let high = |placed: &AlignedPair| extent(placed.socket.iter().flatten(), 2)[1].max(0.0);
+    let top = |placed: &AlignedPair| extent(placed.socket.iter().flatten(), 2)[1];
     let held = |jaws: &Vector3<f64>| {
         let placed = AlignedPair::new(pair, *jaws);
-        let (grasp, larger) = grip::own(&placed.plug, pair.engaged + high(&placed));
+        let (grasp, larger) = grip::own(&placed.plug, pair.engaged + top(&placed).max(0.0));
         (placed, grasp, larger)
     };
     let axes = if size.is_some() { &[] } else { pair.jaws };
@@ -145,7 +147,7 @@ pub fn task(pair: &Pair, name: &str, like: Option<&Task>, size: Option<[f64; 3]>
     let (placed, grasp) = own.unwrap_or_else(|| {
         let placed = AlignedPair::new(pair, first);
         let size = size.unwrap_or(HANDLE);
-        let grasp = grip::handle(&placed.plug, size, pair.engaged + high(&placed));
+        let grasp = grip::handle(&placed.plug, size, pair.engaged + top(&placed).max(0.0));
         (placed, grasp)
     });
     let (mut parts, deviation) = skins(&placed, pair.engaged);
@@ -174,8 +176,19 @@ pub fn task(pair: &Pair, name: &str, like: Option<&Task>, size: Option<[f64; 3]>
         task.strategy = strategy;
     }
     let held = width(extent(grasp.part.solid.corners(), 0));
-    let jaws = placed.jaws;
-    PairTask { task, jaws, held, handle, rejected, interference, deviation, difference, closeup }
+    let (jaws, top) = (placed.jaws, top(&placed));
+    PairTask {
+        task,
+        jaws,
+        held,
+        top,
+        handle,
+        rejected,
+        interference,
+        deviation,
+        difference,
+        closeup,
+    }
 }
 
 /// Returns the parts of plug (0) and socket (1) that the other body can touch, and the worst deviation of either from

@@ -33,8 +33,6 @@ pub struct MatedTask {
     pub jaws: Jaws,
     /// Whether the normals of plug and of socket pointed inward.
     pub inward: [bool; 2],
-    /// Total play of the mated plug in x and in y, m.
-    pub play: [f64; 2],
     /// Findings: the subject and a sentence.
     pub findings: Vec<(&'static str, String)>,
 }
@@ -107,12 +105,8 @@ pub fn mated(
     let long = width(extent(raised.iter().flatten(), out.iamax()));
     findings.extend(described(&mate, [long, depth], &made, handle));
     findings.extend(parts.finding);
-    let play = [1, 0].map(|i| {
-        let along = |way: &Vector3<f64>| (way.dot(&made.jaws).abs() > 0.7) == (i == 0);
-        across.iter().position(along).map_or(0.0, |at| mate.play_m[at])
-    });
     let (along, jaws) = (along_of(&-out), jaws_of(&made.jaws));
-    Ok(MatedTask { made, unit, along, jaws, inward: [plug_inward, socket_inward], play, findings })
+    Ok(MatedTask { made, unit, along, jaws, inward: [plug_inward, socket_inward], findings })
 }
 
 /// Checks that the convex parts match the drawing.

@@ -111,7 +111,7 @@ pub fn default_grasp(plug: &ConvexBody, least_cover: f64) -> Option<(f64, [f64; 
 }
 
 /// Returns whether the corners of a part at this y, m, are more than 1 mm apart in x; those of an upright cylinder are
-/// not.
+/// not. Those of an edge along x are, but a pad does not [`cover`] it.
 fn is_flat(part: &Part, y: f64) -> bool {
     let corners = part.solid.corners();
     width(extent(corners.iter().filter(|p| (p.y - y).abs() < SEAM), 0)) > 1.0 * MM

@@ -144,7 +144,7 @@ fn description(files: &[String; 2]) -> String {
 fn json(mated: &MatedTask, tuned: Option<&Tuned>, checked: &TaskCheck) -> Value {
     let task = &mated.made.task;
     let [plug_parts, socket_parts] = [task.plug.parts.len(), task.socket.len()];
-    let [clearance_x_mm, clearance_y_mm] = mated.play.map(|play| play / MM);
+    let [clearance_x_mm, clearance_y_mm] = mated.made.play.map(|play| play / MM);
     let found = mated.findings.iter().map(|(what, why)| format!("{what} {why}"));
     let left_out = mated.made.interference.iter().map(left_out_json);
     json!({
@@ -182,7 +182,7 @@ fn text(
 ) -> String {
     let (task, out) = (&mated.made.task, &checked.source.file);
     let [plug_parts, socket_parts] = [task.plug.parts.len(), task.socket.len()];
-    let [clearance_x_mm, clearance_y_mm] = mated.play.map(|play| play / MM);
+    let [clearance_x_mm, clearance_y_mm] = mated.made.play.map(|play| play / MM);
     let [wide, high, long] = body_mm(&mated.made);
     let mut text = format!(
         "written       {out}\nplug          {plug}, {plug_parts} convex parts: held by the fingers\n\

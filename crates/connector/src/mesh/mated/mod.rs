@@ -55,6 +55,8 @@ pub struct PairTask {
     pub task: Task,
     /// Direction along which the jaws close.
     pub jaws: Vector3<f64>,
+    /// Total play of the mated plug in x and in y, m.
+    pub play: [f64; 2],
     /// Width in x of the part between the pads, m.
     pub held: f64,
     /// Height of the highest point of the socket, task frame, m.
@@ -175,13 +177,12 @@ pub fn task(pair: &Pair, name: &str, like: Option<&Task>, size: Option<[f64; 3]>
     if let Some(strategy) = like.and_then(|family| family.strategy_for(&task)) {
         task.strategy = strategy;
     }
-    let held = width(extent(grasp.part.solid.corners(), 0));
-    let (jaws, top) = (placed.jaws, top(&placed));
     PairTask {
         task,
-        jaws,
-        held,
-        top,
+        jaws: placed.jaws,
+        play: placed.play,
+        held: width(extent(grasp.part.solid.corners(), 0)),
+        top: top(&placed),
         handle,
         rejected,
         interference,

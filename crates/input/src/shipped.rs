@@ -82,6 +82,22 @@ pub struct Source {
     pub text: String,
 }
 
+impl Source {
+    /// Reads a file; `kind` is what it holds, for errors.
+    ///
+    /// # Errors
+    /// If it cannot be read.
+    pub fn read(kind: &str, path: &Path) -> Result<Self, RequestError> {
+        let file = path.display().to_string();
+        let unreadable = |error| {
+            let text = format!("{file}: cannot read the {kind}: {error}");
+            RequestError { place: Place::file(&file), text }
+        };
+        let text = files::read_text(path, LARGEST_INPUT).map_err(unreadable)?;
+        Ok(Source { file, text })
+    }
+}
+
 /// Returns the shipped file of that name or, if `name` looks like a path (it has a separator or an
 /// extension), the file at that path.
 ///
@@ -93,11 +109,7 @@ pub fn resolve(kind: &str, shipped: &[Shipped], name: &str) -> Result<Source, Re
         return Ok(Source { file: found.file.to_owned(), text: found.text.to_owned() });
     }
     if name.contains(['/', '\\']) || Path::new(name).extension().is_some() {
-        let text = files::read_text(Path::new(name), LARGEST_INPUT).map_err(|error| {
-            let text = format!("{name}: cannot read the {kind}: {error}");
-            RequestError { place: Place::file(name), text }
-        })?;
-        return Ok(Source { file: name.to_owned(), text });
+        return Source::read(kind, Path::new(name));
     }
     let names: Vec<&'static str> = shipped.iter().map(|shipped| shipped.name).collect();
     let begins = |other: &&str| !name.is_empty() && other.starts_with(name);

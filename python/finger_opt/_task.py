@@ -54,7 +54,7 @@ class Fields:
         if isinstance(value, Fields):
             value = value._table
         if value is None:
-            raise wrong(str(key), "is None; give a value, which a task file can contain")
+            raise wrong(str(key), "is None; accepted: a number, a text, True or False, a list or a table")
         table, index = self._table, self._resolved(key)
         known = not is_table(table) or index in table
         before = table[index] if known else None

@@ -1,4 +1,5 @@
 //! Names the commit for `optimize --version`.
+#![allow(clippy::print_stdout, reason = "cargo reads it")]
 
 use std::path::Path;
 use std::process::Command;

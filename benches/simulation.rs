@@ -1,4 +1,5 @@
 //! Time of what is simulated: `cargo bench --bench simulation`.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use connector::mating::mates;
 use connector::mesh::mated::{self, Pair};

@@ -1,5 +1,4 @@
 //! `optimize`: finds the most robust compliant finger for a connector task.
-#![forbid(unsafe_code)]
 
 use std::process::ExitCode;
 

@@ -2,8 +2,7 @@
 
 use crate::failure::Failure;
 use clap::Command;
-use input::files::{LARGEST_INPUT, read_text};
-use input::shipped::MEASUREMENTS;
+use input::shipped::{MEASUREMENTS, Source};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
@@ -65,9 +64,7 @@ impl Project {
 
     fn read(folder: &Path) -> Result<Self, Failure> {
         let path = folder.join(PROJECT_FILE);
-        let file = path.display().to_string();
-        let text = read_text(&path, LARGEST_INPUT)
-            .map_err(|error| Failure::in_file(&file, format!("cannot read it: {error}")))?;
+        let Source { file, text } = Source::read("project file", &path).map_err(Failure::input)?;
         let table: toml::Table = input::read(&text, &file).map_err(Failure::input)?;
         if let Some(key) = OF_STUDY.iter().find(|key| table.contains_key(**key)) {
             let problem = format!("{key}: belongs to one study; give --{key} on the command line");

@@ -1,4 +1,11 @@
 //! Tests of the program and of the project, in one binary: linked once, and run beside each other.
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stdout,
+    clippy::print_stderr
+)]
 
 mod architecture;
 mod ask_tell;

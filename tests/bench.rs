@@ -12,8 +12,11 @@ fn measurements_are_added_checked_and_refused() {
     add("0 --range-mm 5.7").succeeds();
     add("10 --negative-mm -1.5 --failure-negative 3").succeeds();
     let before = folder.read("bench.csv");
-    add("0 --range-mm 5.8").fails(2, &["line 4: task: ", "line 2"]);
-    add("0.35 --range-mm 5.8").fails(2, &["degrees, as in 20"]);
+    // What was typed is named, not the line that it would make.
+    add("0 --range-mm 5.8").fails(2, &["error: --task: same finger as in line 2"]);
+    add("0.35 --range-mm 5.8").fails(2, &["error: --direction: 0.35 looks", "degrees, as in 20"]);
+    let two = ["error: --set task.strategy.tilt_deg: `y` is not a number\n--range-mm: `x` is not"];
+    add("5 --set task.strategy.tilt_deg=y --range-mm x").fails(2, &two);
     assert_eq!(folder.read("bench.csv"), before);
     let checked = optimize_line(&format!("measure check {file} --json")).json();
     assert_eq!((&checked["lines"], &checked["tasks"][0]["bounds"]), (&2.into(), &1.into()));
@@ -39,6 +42,24 @@ fn an_evaluation_shows_what_was_measured_and_warns_where_it_is_far_off() {
     of(10, "").says(&["measured      0.1 mm on the bench\nwarning       do not trust"]);
     of(20, "").says(&["measured      20.0 mm or more, on the bench\nwarning       do not trust"]);
     assert!(!of(30, "").succeeds().contains("measured  "));
+}
+
+#[test]
+fn a_calibration_far_off_the_fingers_left_out_is_warned_about() {
+    let folder = Studies::new();
+    let few = "--task ket8 --engine fake --simulations 24 --samples 20 --json --measurements";
+    // A finger much worse than it is simulated.
+    let odd = folder.file("odd.csv", format!("{HEAD}ket8,10,0,0.5\n"));
+    let warned = |file: &str| {
+        let task = &optimize_line(&format!("calibrate {few} {file}")).json()["tasks"][0];
+        let off = task["loo_mean_deviation_percent"].as_f64().expect("a number") > 50.0;
+        let warned =
+            task["warnings"].to_string().contains("left out, the measured fingers are predicted");
+        assert_eq!(warned, off, "{task}");
+        warned
+    };
+    assert!(warned(&odd));
+    warned("published");
 }
 
 #[test]

@@ -6,6 +6,7 @@ use connector::check::problems;
 use connector::draft::{Dimensions, Size, draft};
 use connector::mesh::{Surface, pick, read};
 use connector::nominal::explain;
+use finger_opt::setup::task::TaskFile;
 use input::shipped::TASKS;
 use input::units::MM;
 use insertion::outcome::Outcome;
@@ -144,6 +145,22 @@ fn each_fault_is_caught_with_its_key_and_what_would_be_right() {
         });
         assert!(caught, "{to}: {found:#?}");
     }
+}
+
+/// Fields that were not read from a file have no line.
+#[test]
+fn a_field_of_a_wrong_type_is_named_with_its_value() {
+    let mut fields: Value = toml::from_str(USB).unwrap();
+    let said = |fields: &Value| TaskFile::of_fields("mine", fields).unwrap_err().to_string();
+    fields["strategy"]["start_mm"][2] = "high".into();
+    let wrong = "invalid type: string \"high\", expected f64";
+    assert_eq!(said(&fields), format!("mine: strategy.start_mm: {wrong}"));
+    fields["strategy"]["start_mm"][2] = 51.0.into();
+    fields["strategy"]["phase"][0]["speed_mm_per_s"] = true.into();
+    assert!(
+        said(&fields)
+            .starts_with("mine: strategy.phase.speed_mm_per_s: invalid type: boolean `true`")
+    );
 }
 
 /// The file in another unit: nothing but that is said.

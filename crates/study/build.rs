@@ -1,4 +1,5 @@
 //! Hashes the sources that determine results, to recognise results of other sources.
+#![allow(clippy::print_stdout, reason = "cargo reads it")]
 
 use sha2::{Digest, Sha256};
 use std::io;

@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterable, Iterator
 from typing import Any, Union
 
 from . import _native
+from ._call import wrong
 from ._json import dumps, is_list, is_table, word
 from ._words import StrPath, TaskName
 from .errors import InputError
@@ -52,6 +53,8 @@ class Fields:
     def __setitem__(self, key: str | int, value: Any) -> None:
         if isinstance(value, Fields):
             value = value._table
+        if value is None:
+            raise wrong(str(key), "is None; accepted: a number, a text, True or False, a list or a table")
         table, index = self._table, self._resolved(key)
         known = not is_table(table) or index in table
         before = table[index] if known else None

@@ -38,6 +38,11 @@ def test_what_cannot_be_is_refused_and_changes_nothing():
     before = task.to_toml()
     with pytest.raises(fo.InputError, match="mass_g"):
         task.plug.mass_g = -1
+    with pytest.raises(fo.InputError, match="strategy.tilt_deg: invalid type: string \"8\"") as raised:
+        task.strategy.tilt_deg = "8"
+    assert (raised.value.key, raised.value.line) == ("strategy.tilt_deg", None)
+    with pytest.raises(fo.InputError, match="tilt_deg: is None"):
+        task.strategy.tilt_deg = None
     with pytest.raises(AttributeError, match="^unknown field `tilt_degg`.*did you mean `tilt_deg`"):
         task.strategy.tilt_degg = 3
     with pytest.raises(AttributeError, match="unknown field `stratgy`"):

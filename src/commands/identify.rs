@@ -14,8 +14,7 @@ use calibration::identify::frame::Frame;
 use calibration::identify::mount;
 use calibration::identify::question::{Identification, IdentificationResult, Identified};
 use calibration::identify::runs;
-use input::files::{self, LARGEST_INPUT};
-use input::shipped::PRIORS;
+use input::shipped::{PRIORS, Source};
 use input::units::N_PER_MM;
 use insertion::evaluation::cell::Priors;
 use insertion::robot::{Drive, Robot};
@@ -85,10 +84,8 @@ impl Request {
         let priors = Priors::parse(&source.text, &source.file).map_err(Failure::input)?;
         setup.evaluator.check_paths(&priors, &source.file).map_err(Failure::input)?;
         let frame = self.frame.as_deref().map(|path| -> Result<Frame, Failure> {
-            let file = path.to_string_lossy();
-            let text = files::read_text(path, LARGEST_INPUT);
-            let text = text.map_err(|error| Failure::in_file(&file, error))?;
-            Frame::parse(&text, &file).map_err(Failure::input)
+            let source = Source::read("frame", path).map_err(Failure::input)?;
+            Frame::parse(&source.text, &source.file).map_err(Failure::input)
         });
         let frame = frame.transpose()?;
         let runs = runs::read(&self.runs, frame.as_ref(), log_text).map_err(Failure::input)?;

@@ -7,7 +7,6 @@ use super::task::read_task;
 use crate::failure::Failure;
 use calibration::experiments::{self, Experiment};
 use calibration::subject::completed;
-use input::files::{LARGEST_INPUT, read_text};
 use input::shipped::{COMMERCIAL, MEASUREMENTS, Source, TASKS};
 use insertion::evaluation::cell::Priors;
 use insertion::evaluation::template::Template;
@@ -39,9 +38,7 @@ pub fn read(name: &str, more: &[&str]) -> Result<Vec<Experiment>, Failure> {
 /// Reads a measurement file by its path or its shipped name.
 pub fn file(name: &str) -> Result<Source, Failure> {
     if Path::new(name).is_file() {
-        let text = read_text(Path::new(name), LARGEST_INPUT);
-        let unreadable = |error| Failure::in_file(name, format!("cannot read it: {error}"));
-        return Ok(Source { file: name.to_owned(), text: text.map_err(unreadable)? });
+        return Source::read("measurement file", Path::new(name)).map_err(Failure::input);
     }
     find("measurement file", MEASUREMENTS, name)
 }

@@ -4,7 +4,6 @@ use super::Setup;
 use super::files::{DEFAULT_FINGER, Fingers, find, stiffness_data};
 use crate::failure::Failure;
 use connector::mesh::axes::value;
-use input::files::{LARGEST_INPUT, read_text};
 use input::shipped::{COMMERCIAL, FINGERS, ROBOTS, SPACES, Source, TASKS, resolve};
 use insertion::evaluation::cell::Priors;
 use insertion::finger::file::is_shape;
@@ -214,9 +213,7 @@ impl FingerModelRequest {
 
 /// Reads a cell file: robot, friction and other parameters of an installation.
 fn cell(path: &str) -> Result<(Source, Priors), Failure> {
-    let text = read_text(Path::new(path), LARGEST_INPUT)
-        .map_err(|error| Failure::in_file(path, format!("cannot read the cell: {error}")))?;
-    let source = Source { file: path.to_owned(), text };
+    let source = Source::read("cell", Path::new(path)).map_err(Failure::input)?;
     let cell = super::cell(&source)?;
     Ok((source, cell))
 }

@@ -47,8 +47,12 @@ impl TaskFile {
 
     /// Creates a task file with these fields and checks it; `file` is its name in messages.
     pub fn of_fields(file: &str, fields: &serde_json::Value) -> Result<Self, Failure> {
-        let text = toml::to_string(fields)
-            .map_err(|error| Failure::task(Place::file(file).fault(error.to_string())))?;
+        let unfit =
+            |error: toml::ser::Error| Failure::task(Place::file(file).fault(error.to_string()));
+        // Names the key of a wrong value; the parser below would quote a line that the caller has not written.
+        let table = toml::Table::try_from(fields).map_err(unfit)?;
+        Task::from_table(table, file).map_err(Failure::task)?;
+        let text = toml::to_string(fields).map_err(unfit)?;
         TaskFile::parse(Source { file: file.to_owned(), text })
     }
 }

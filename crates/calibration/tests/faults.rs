@@ -1,4 +1,5 @@
 //! Logs of simulated cells with a fault each: the checks report its likely cause, and nothing for logs without a fault.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use ask_tell::normal::StandardNormal;
 use ask_tell::stream::stream;

@@ -2,7 +2,7 @@
 
 use super::write;
 use insertion::task::Strategy;
-use toml_edit::{Array, ArrayOfTables, DocumentMut, Item, Table, TomlError, Value};
+use toml_edit::{Array, ArrayOfTables, DocumentMut, Item, RawString, Table, TomlError, Value};
 
 /// Byte order mark, with which some editors on Windows begin a file.
 const BYTE_ORDER_MARK: char = '\u{feff}';
@@ -66,12 +66,12 @@ fn update(old: &mut Table, new: &Table) {
             continue;
         }
         let mut value = to.clone();
-        let beside = from.as_ref().and_then(|from| from.decor().suffix()?.as_str());
-        let note = from.as_ref().map_or(String::new(), |from| format!("was {}", bare(from)));
-        let beside = beside.unwrap_or("").trim();
-        let join = if beside.is_empty() { "#" } else { ";" };
-        *value.decor_mut() =
-            toml_edit::Decor::new(" ", format!(" {beside}{join} {note}").replace(" ;", ";"));
+        let note = from.map_or(String::new(), |from| {
+            let beside = from.decor().suffix().and_then(RawString::as_str).unwrap_or("").trim();
+            let join = if beside.is_empty() { "#" } else { ";" };
+            format!(" {beside}{join} was {}", bare(&from))
+        });
+        *value.decor_mut() = toml_edit::Decor::new(" ", note);
         // Replaced in place, because a key that is removed and inserted loses the comments above it.
         match old.get_mut(key) {
             Some(item) => *item = Item::Value(value),
@@ -168,6 +168,21 @@ mod tests {
             assert_eq!(written, format!("{BYTE_ORDER_MARK}{}", plain.replace('\n', "\r\n")));
             assert!(Task::parse(&written, "written").is_ok());
         }
+    }
+
+    #[test]
+    fn a_new_key_has_no_comment_and_a_changed_one_keeps_its_own() {
+        let [file, ..] = TASKS else { panic!() };
+        let strategy = |text: &str| Task::parse(text, "own").unwrap().strategy;
+        let more = "preload_mm = 0.3\ntouch_force_n = 2.5\nlatency_s = 0.02";
+        let more = file.text.replacen("preload_mm = 0.3", more, 1);
+        assert_eq!(with_strategy(file.text, &strategy(&more)).unwrap(), more);
+        let comment = |text: &str| file.text.replacen("tilt_deg = 5.0", text, 1);
+        let written = with_strategy(
+            &comment("tilt_deg = 5.0 # a ; b"),
+            &strategy(&comment("tilt_deg = 6.0")),
+        );
+        assert_eq!(written.unwrap(), comment("tilt_deg = 6.0 # a ; b; was 5.0"));
     }
 
     #[test]

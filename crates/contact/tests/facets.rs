@@ -1,4 +1,11 @@
 //! A block on a face of facets: it sinks, tilts, slides and turns as on a whole one.
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stdout,
+    clippy::print_stderr
+)]
 
 use contact::direct::Direct;
 use contact::rapier::Rapier;

@@ -6,6 +6,7 @@
 //! `s (cos p - cos p0)`, and the force on the peg is inclined to the line by the friction angle `f`:
 //! `Fz = k s (cos p - cos p0) tan(p + f)`. If `p0 + f` is a right angle or more, the peg stays on the rim; the
 //! limit is `e = s (1 - sin f)`.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use contact::direct::Direct;
 use contact::rapier::Rapier;

@@ -141,10 +141,11 @@ impl LockedFile {
         let copy = if appends { None } else { Some(self.back_up()?) };
         let written = self.rewrite(kept, new);
         let whole = written.is_ok() || self.rewrite(kept, &self.text).is_ok();
-        if let (Some(copy), true) = (copy, whole) {
-            fs::remove_file(copy)?;
+        if written.is_ok() {
+            new.clone_into(&mut self.text);
         }
-        written.map(|()| new.clone_into(&mut self.text))
+        let removed = copy.filter(|_| whole).map_or(Ok(()), fs::remove_file);
+        written.and(removed)
     }
 
     /// Copies the text to `<name>.before`, in case the process is killed while the file is rewritten. An existing file
@@ -248,6 +249,7 @@ pub fn visible(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::sync::atomic::AtomicBool;
 
     #[test]
     fn control_characters_are_shown_and_json_stays_json() {
@@ -323,5 +325,27 @@ mod tests {
         assert_eq!(fs::read_to_string(&path).unwrap(), "another beginning\n");
         drop(LockedFile::open(&dir.path().join("new.csv"), LARGEST_INPUT).unwrap());
         assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 1, "no copy, no empty file");
+    }
+
+    #[test]
+    fn a_backup_that_cannot_be_removed_leaves_the_new_text() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("table.csv");
+        fs::write(&path, "a line\n").unwrap();
+        let mut table = LockedFile::open(&path, LARGEST_INPUT).unwrap();
+        let done = AtomicBool::new(false);
+        // Another thread removes the copy as soon as it is made, some time before the function does.
+        let failed = std::thread::scope(|scope| {
+            scope.spawn(|| {
+                while !done.load(Ordering::Relaxed) {
+                    let _ = fs::remove_file(dir.path().join("table.csv.before"));
+                }
+            });
+            let failed = (0..1000).any(|number| table.replace(&format!("{number}th\n")).is_err());
+            done.store(true, Ordering::Relaxed);
+            failed
+        });
+        assert!(failed, "the copy was always there to be removed");
+        assert_eq!(table.text(), fs::read_to_string(&path).unwrap());
     }
 }

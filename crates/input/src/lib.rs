@@ -1,10 +1,5 @@
 //! Input files: reading up to a size limit, checks, errors and units. Internally, every quantity is in SI units; a
 //! quantity in another unit, such as mm, N/mm or degrees, has the unit in its name ([`units`]).
-#![forbid(unsafe_code)]
-#![warn(missing_docs)]
-#![deny(clippy::print_stdout, clippy::print_stderr)]
-// A panic is a bug; invalid input must produce an error with a message.
-#![cfg_attr(not(test), deny(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
 pub mod files;
 pub mod numbers;
@@ -26,12 +21,19 @@ const SMALLEST: f64 = 1e-9;
 /// Largest magnitude of a coordinate or a displacement, mm.
 const LONGEST_MM: f64 = 1000.0;
 
-/// Returns the error of a file with invalid TOML or an unexpected structure; `text` is that of the file.
+/// Returns the error of a file with invalid TOML or an unexpected structure; `text` is that of the file, empty for a
+/// table without a text.
 pub fn syntax(file: &str, text: &str, error: &toml::de::Error) -> InputError {
     let before = error.span().and_then(|span| text.get(..span.start));
     let line = before.map(|before| 1 + before.matches('\n').count());
-    let problem = error.to_string().trim_end().to_owned() + &suggestion(error.message());
-    Place { line, ..Place::file(file) }.fault(problem)
+    let shown = error.to_string();
+    // Without a text, the message ends with the key.
+    let (problem, key) = match shown.trim_end().rsplit_once("\nin `") {
+        Some((problem, key)) => (problem, key.trim_end_matches('`')),
+        None => (shown.trim_end(), ""),
+    };
+    let place = Place { line, ..Place::file(file) }.key(key);
+    place.fault(problem.to_owned() + &suggestion(error.message()))
 }
 
 /// Returns a question that suggests the accepted word nearest to the unknown word of a parser's message; empty if none
@@ -97,10 +99,7 @@ impl<'a> Document<'a> {
         }
         // No array may be too long. The deserializer of TOML text ignores surplus elements: it would read
         // `[-4,175, 4,175]`, with decimal commas, as -4 and 175.
-        T::deserialize(toml::Value::Table(table)).map_err(|error| {
-            let key = error.to_string().rsplit('`').nth(1).map(str::to_owned);
-            Place { key, ..Place::file(self.file) }.fault(error.message())
-        })?;
+        T::deserialize(toml::Value::Table(table)).map_err(|error| syntax(self.file, "", &error))?;
         Ok(value)
     }
 
@@ -266,6 +265,7 @@ impl Check<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::collections::BTreeMap;
 
     #[derive(Debug, serde::Deserialize)]
     #[serde(deny_unknown_fields)]
@@ -282,6 +282,19 @@ mod tests {
         assert!(text.ends_with("expected `plug_socket`; did you mean `plug_socket`?"), "{text}");
         let error = read::<Friction>("other = 0.3", "task.toml").unwrap_err().to_string();
         assert!(!error.contains("mean"), "{error}");
+    }
+
+    #[test]
+    fn a_table_without_a_text_is_reported_by_key_and_value() {
+        let error = |text: &str| {
+            let table: toml::Table = text.parse().unwrap();
+            let error = table.try_into::<BTreeMap<String, Friction>>().unwrap_err();
+            syntax("task", "", &error).to_string()
+        };
+        let wrong = "task: friction.plug_socket: invalid type: string \"0.3\", expected f64";
+        assert_eq!(error("friction.plug_socket = \"0.3\""), wrong);
+        let unknown = error("friction.plug_sockt = 0.3");
+        assert!(unknown.starts_with("task: friction: unknown field `plug_sockt`"), "{unknown}");
     }
 
     #[derive(Debug, serde::Deserialize)]

@@ -47,12 +47,12 @@ pub const SPACES: &[Shipped] = shipped! {
     "finger": "spaces/finger.toml",
 };
 
-/// Robots, from a rigid one to a compliant arm.
+/// Robots, the likelier before the other of two alike.
 pub const ROBOTS: &[Shipped] = shipped! {
     "servo": "robots/servo.toml",
     "rigid": "robots/rigid.toml",
-    "ur5e": "robots/ur5e.toml",
     "ur5e_position": "robots/ur5e_position.toml",
+    "ur5e": "robots/ur5e.toml",
 };
 
 /// Geometry and material of printed fingers.
@@ -82,28 +82,48 @@ pub struct Source {
     pub text: String,
 }
 
+impl Source {
+    /// Reads a file; `kind` is what it holds, for errors.
+    ///
+    /// # Errors
+    /// If it cannot be read.
+    pub fn read(kind: &str, path: &Path) -> Result<Self, RequestError> {
+        let file = path.display().to_string();
+        let unreadable = |error| {
+            let text = format!("{file}: cannot read the {kind}: {error}");
+            RequestError { place: Place::file(&file), text }
+        };
+        let text = files::read_text(path, LARGEST_INPUT).map_err(unreadable)?;
+        Ok(Source { file, text })
+    }
+}
+
 /// Returns the shipped file of that name or, if `name` looks like a path (it has a separator or an
 /// extension), the file at that path.
 ///
 /// # Errors
-/// If there is no such file or it cannot be read; the message about an unknown name lists the nearest name and all
-/// names.
+/// If there is no such file or it cannot be read; the message about an unknown name lists the names that begin with it,
+/// else the nearest one, and all names.
 pub fn resolve(kind: &str, shipped: &[Shipped], name: &str) -> Result<Source, RequestError> {
     if let Some(found) = shipped.iter().find(|shipped| shipped.name == name) {
         return Ok(Source { file: found.file.to_owned(), text: found.text.to_owned() });
     }
     if name.contains(['/', '\\']) || Path::new(name).extension().is_some() {
-        let text = files::read_text(Path::new(name), LARGEST_INPUT).map_err(|error| {
-            let text = format!("{name}: cannot read the {kind}: {error}");
-            RequestError { place: Place::file(name), text }
-        })?;
-        return Ok(Source { file: name.to_owned(), text });
+        return Source::read(kind, Path::new(name));
     }
     let names: Vec<&'static str> = shipped.iter().map(|shipped| shipped.name).collect();
-    let hint = nearest(name, &names).map(|name| format!(" (did you mean `{name}`?)"));
+    let begins = |other: &&str| !name.is_empty() && other.starts_with(name);
+    let mut near: Vec<&str> = names.iter().copied().filter(begins).collect();
+    if near.is_empty() {
+        near.extend(nearest(name, &names));
+    }
+    let hint = match near.as_slice() {
+        [] => String::new(),
+        near => format!(" (did you mean `{}`?)", near.join("` or `")),
+    };
+    let list = if kind == "robot" { " (see `optimize robots`)" } else { "" };
     let text = format!(
-        "unknown {kind} `{name}`{}; available: {}, or give the path of a file",
-        hint.unwrap_or_default(),
+        "unknown {kind} `{name}`{hint}; available{list}: {}, or give the path of a file",
         names.join(", ")
     );
     Err(RequestError { place: Place::default().key(&kind.replace(' ', "_")), text })
@@ -123,5 +143,15 @@ mod tests {
     #[test]
     fn a_name_of_which_more_than_half_differs_is_not_near() {
         assert_eq!(nearest("hexapod", &["usb", "rj45"]), None);
+    }
+
+    #[test]
+    fn the_beginning_of_names_suggests_them_all() {
+        let error = |name: &str| resolve("robot", ROBOTS, name).unwrap_err().to_string();
+        let text = "unknown robot `ur5` (did you mean `ur5e_position` or `ur5e`?); available (see `optimize robots`): \
+                    servo, rigid, ur5e_position, ur5e, or give the path of a file";
+        assert_eq!(error("ur5"), text);
+        assert!(error("rigit").contains("(did you mean `rigid`?)"));
+        assert!(error("").contains("robot ``; available"));
     }
 }

@@ -1,4 +1,5 @@
 //! Contents of the models, read back as XML.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use contact::mjcf::*;
 use contact::scene::*;

@@ -1,5 +1,5 @@
 //! Behaviour that the checks do not show.
-
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 #![cfg(feature = "mujoco")]
 
 use contact::mujoco::*;

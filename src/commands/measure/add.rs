@@ -6,10 +6,12 @@ use crate::failure::Failure;
 use crate::setup::task::{TaskFile, read_task};
 use crate::terminal::say;
 use calibration::experiments::{
-    COLUMNS, Experiment, NOT_MEASURABLE, appended, own_task, own_tasks, parse,
+    COLUMNS, Experiment, NOT_MEASURABLE, Problems, appended, own_task, own_tasks, parse,
 };
+use input::InputError;
 use input::files::{LARGEST_INPUT, LockedFile};
 use input::shipped::{COMMERCIAL, MEASUREMENTS, TASKS};
+use insertion::space::{DENSITY_KEY, DIRECTION_KEY};
 use serde_json::json;
 use std::io::{self, BufRead};
 use std::path::Path;
@@ -129,11 +131,27 @@ fn add(
         |(name, path): &(String, String)| own_tasks(table.text()).get(&**name) != Some(&&**path);
     let comment = own.filter(new).map_or(String::new(), |(name, path)| own_task(&name, &path));
     let new = appended(table.text(), &comment, &cells).map_err(Failure::input)?;
-    let found = parse(&new, file).map_err(Failure::input)?;
+    // Any problem is one of the new line.
+    let found = parse(&new, file).map_err(|problems| of_options(&problems))?;
     if !dry_run {
         table.replace(&new).map_err(unwritable)?;
     }
     Ok(found)
+}
+
+/// Returns the error of a new line, with options in place of the line and its columns.
+fn of_options(problems: &Problems) -> Failure {
+    let option = |column: &str| match column {
+        DENSITY_KEY => "--density".to_owned(),
+        DIRECTION_KEY => "--direction".to_owned(),
+        key if key.contains('.') => format!("--set {key}"),
+        column => format!("--{}", column.replace('_', "-")),
+    };
+    let text = |one: &InputError| match &one.place.key {
+        Some(column) => format!("{}: {}", option(column), one.problem),
+        None => one.to_string(),
+    };
+    Failure::usage(problems.0.iter().map(text).collect::<Vec<_>>().join("\n"))
 }
 
 impl Request {

@@ -71,7 +71,7 @@ fn reader() -> csv::ReaderBuilder {
 /// All problems of a file, one line each.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{}", self.0.iter().map(InputError::to_string).collect::<Vec<_>>().join("\n"))]
-pub struct Problems(Vec<InputError>);
+pub struct Problems(pub Vec<InputError>);
 
 impl From<InputError> for Problems {
     fn from(error: InputError) -> Self {

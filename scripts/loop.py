@@ -139,6 +139,10 @@ class Cell:
             named.append(finger)
         if "c" in ways:
             named += self.by_measurement()
+        if "t" in ways:
+            for finger, moves in self.by_truth():
+                self.window_mm(finger, moves)
+                named.append(finger)
         for finger in [*named, *map(list, fixed())]:
             self.window_mm(finger)
 
@@ -172,6 +176,18 @@ class Cell:
                     found = self.once(f"{cell} {way}", lambda space=space: self.study(cell, space))
                     chosen.append((infill(found), strategy(found)))
         return chosen
+
+    def by_truth(self) -> list[tuple[list[float], dict[str, float]]]:
+        """Follows ways d and e in the drawn cell itself; returns the fingers with their strategies.
+
+        Without an error of identification, what is left to a wider window is the model's.
+        """
+        from finger_opt import _native
+
+        (self.path / "truth.toml").write_text(_native.drawn_cell(self.seed)[0], encoding="utf-8")
+        spaces = {"d": "infill", "e": str(strategy_space(self.path.parent))}
+        found = [self.once(f"truth {way}", lambda space=space: self.study("truth", space)) for way, space in spaces.items()]
+        return [(infill(one), strategy(one)) for one in found]
 
     def two_windows(self, folder: Path) -> None:
         """Measures the first prints; replaces those that insert from no start by prints of ``next``, up to PRINTS."""

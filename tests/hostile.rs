@@ -365,11 +365,15 @@ fn a_limit_of_the_file_size_is_a_message_and_leaves_a_whole_journal() {
     studies.study("reference", 22, &[]).succeeds();
     let expected = studies.journal("reference");
     let study = "--task usb --engine fake --budget 22 --no-cache --quiet --out";
-    let line = format!("ulimit -f 16; exec \"$0\" {study} \"$1\"");
-    shell(&line, &[&studies.word("limited")])
-        .fails(1, &["journal.jsonl: cannot write", "optimize resume"]);
-    let kept = studies.journal("limited");
-    assert!(kept.lines().count() > 3 && expected.starts_with(&kept));
-    studies.resume("limited").succeeds();
-    assert_eq!(studies.journal("limited"), expected);
+    // The first write that does not fit is cut at another place of its line.
+    for kibibytes in [7, 11, 15, 19] {
+        let name = format!("limited-{kibibytes}");
+        let line = format!("ulimit -f {kibibytes}; exec \"$0\" {study} \"$1\"");
+        shell(&line, &[&studies.word(&name)])
+            .fails(1, &["journal.jsonl: cannot write", "optimize resume"]);
+        let kept = studies.journal(&name);
+        assert!(kept.lines().count() > 3 && expected.starts_with(&kept), "{name}");
+        studies.resume(&name).succeeds();
+        assert_eq!(studies.journal(&name), expected, "{name}");
+    }
 }

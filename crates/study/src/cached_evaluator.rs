@@ -30,7 +30,7 @@ impl Evaluate for CachedEvaluator<'_> {
     fn evaluate(&self, design: &Design, race: Option<&Race>) -> Result<Evaluations, DesignError> {
         let (plan, mut cached) = (self.plan.against(race), Vec::new());
         let measured = self.evaluator.evaluate_by(design, |specimen| {
-            let (evaluation, was_cached) = self.measure(specimen, &plan)?;
+            let (evaluation, was_cached) = self.evaluate_specimen(specimen, &plan)?;
             cached.push(was_cached);
             Ok(evaluation)
         })?;
@@ -72,7 +72,7 @@ impl CachedEvaluator<'_> {
     ///
     /// # Errors
     /// If the design cannot be simulated.
-    pub fn measure(
+    pub fn evaluate_specimen(
         &self,
         specimen: &Specimen,
         plan: &Plan,

@@ -16,15 +16,14 @@ use super::config::{AnalysisSettings, StudyConfig};
 use super::confirmed;
 use super::error::StudyError;
 use super::header;
-use super::journal::{self, Contents, Journal};
+use super::journal::{self, Contents, JOURNAL_FILE, Journal};
 use super::limits::ForceLimits;
-use super::lock::{Lock, UNKNOWN_OWNER, lock};
+use super::lock::{Lock, lock};
 use super::on_bench::BenchPrediction;
 use super::provenance::{Provenance, Segment};
 use super::record::{Recorded, StudyRecord, first_current};
 use super::rule::Rule;
 use super::seal::sha256_hex;
-use super::store::{FileStore, Store};
 use input::files::{self, LARGEST_INPUT, LARGEST_OWN};
 use insertion::finger::file::FingerFile;
 use serde::Serialize;
@@ -37,8 +36,6 @@ use std::path::{Path, PathBuf};
 
 /// File of the configuration.
 pub const CONFIG_FILE: &str = "study.toml";
-/// File of the journal.
-pub const JOURNAL_FILE: &str = "journal.jsonl";
 const INPUTS: &str = "inputs";
 /// Role of the finger file among the inputs.
 pub const FINGER: &str = "finger";
@@ -85,7 +82,7 @@ impl Study {
         let lock = lock(dir)?;
         if has_config(dir)? && has_begun(dir) {
             check_continues(dir, config)?;
-            let mut study = Study::open_locked(dir, lock, journal_file(dir)?)?;
+            let mut study = Study::open_locked(dir, lock)?;
             let before = (study.config.budget, study.config.settles);
             // With early stopping the budget is only a limit.
             let least = if before.1 { study.evaluations.len() as u64 } else { before.0 };
@@ -104,7 +101,7 @@ impl Study {
             check_continues(dir, &StudyConfig { batch, ..config.clone() })?;
         }
         begin(dir, config, inputs)?;
-        Study::open_locked(dir, lock, journal_file(dir)?)
+        Study::open_locked(dir, lock)
     }
 
     /// Writes a study without a journal to `dir`; an existing study is not changed.
@@ -127,22 +124,12 @@ impl Study {
     pub fn resume(dir: &Path) -> Result<Study, StudyError> {
         // Before the lock, which would create a file in a folder without a study.
         read_config(dir)?;
-        let lock = lock(dir)?;
-        Study::open_locked(dir, lock, journal_file(dir)?)
+        Study::open_locked(dir, lock(dir)?)
     }
 
-    /// Opens the study in `dir` with its journal in `store` in place of the file.
-    ///
-    /// # Errors
-    /// See [`resume`](Self::resume).
-    pub fn resume_with(dir: &Path, store: Box<dyn Store>) -> Result<Study, StudyError> {
-        read_config(dir)?;
-        Study::open_locked(dir, lock(dir)?, store)
-    }
-
-    fn open_locked(dir: &Path, lock: Lock, store: Box<dyn Store>) -> Result<Study, StudyError> {
+    fn open_locked(dir: &Path, lock: Lock) -> Result<Study, StudyError> {
         let config = read_config(dir)?;
-        let (journal, contents) = Journal::open(store, &dir.join(JOURNAL_FILE), &config)?;
+        let (journal, contents) = Journal::open(dir, &config)?;
         // New file names then survive a power failure; not every system supports this.
         if cfg!(unix) {
             let sync = File::open(dir).and_then(|folder| folder.sync_all());
@@ -210,7 +197,7 @@ impl Study {
     ///
     /// # Errors
     /// If it was.
-    pub fn check_journal(&mut self) -> Result<(), StudyError> {
+    pub fn check_journal(&self) -> Result<(), StudyError> {
         self.journal.check()
     }
 
@@ -288,18 +275,6 @@ impl StudyRecord {
     pub fn inputs(&self, dir: &Path) -> Result<Inputs, StudyError> {
         read_inputs(dir, &self.segments)
     }
-}
-
-/// Opens the journal of the study in `dir`.
-fn journal_file(dir: &Path) -> Result<Box<dyn Store>, StudyError> {
-    let path = dir.join(JOURNAL_FILE);
-    let store = FileStore::open(&path).map_err(|error| match error.kind() {
-        io::ErrorKind::WouldBlock => {
-            StudyError::Locked { dir: dir.to_owned(), owner: UNKNOWN_OWNER.to_owned() }
-        }
-        _ => StudyError::io("open", &path)(error),
-    })?;
-    Ok(Box::new(store))
 }
 
 /// Writes the inputs and the configuration of a study to `dir`.

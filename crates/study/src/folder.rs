@@ -80,7 +80,7 @@ impl Study {
     ) -> Result<Study, StudyError> {
         fs::create_dir_all(dir).map_err(StudyError::io("create the folder", dir))?;
         let lock = lock(dir)?;
-        if has_config(dir)? && has_begun(dir) {
+        if has_config(dir) && has_begun(dir) {
             check_continues(dir, config)?;
             let mut study = Study::open_locked(dir, lock)?;
             let before = (study.config.budget, study.config.settles);
@@ -95,7 +95,7 @@ impl Study {
             }
             return Ok(study);
         }
-        if has_config(dir)? {
+        if has_config(dir) {
             // Created without a journal: the batch may depend on the number of workers.
             let batch = read_config(dir)?.batch;
             check_continues(dir, &StudyConfig { batch, ..config.clone() })?;
@@ -109,7 +109,7 @@ impl Study {
     /// # Errors
     /// If the folder holds a study of another configuration or cannot be written.
     pub fn create(dir: &Path, config: &StudyConfig, inputs: &Inputs) -> Result<(), StudyError> {
-        if has_config(dir)? {
+        if has_config(dir) {
             return check_continues(dir, config);
         }
         fs::create_dir_all(dir).map_err(StudyError::io("create the folder", dir))?;
@@ -296,9 +296,8 @@ pub fn has_begun(dir: &Path) -> bool {
 }
 
 /// Returns whether a folder holds the configuration of a study.
-fn has_config(dir: &Path) -> Result<bool, StudyError> {
-    let file = dir.join(CONFIG_FILE);
-    file.try_exists().map_err(StudyError::io("look for", &file))
+fn has_config(dir: &Path) -> bool {
+    dir.join(CONFIG_FILE).exists()
 }
 
 /// Checks that the study in a folder can be continued with a configuration.

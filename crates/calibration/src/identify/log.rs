@@ -1,11 +1,15 @@
 //! Log of one attempt or probe: commanded and measured TCP, and the force on the tool.
 
+use super::curves::STEP_S;
+use ask_tell::normal::StandardNormal;
+use ask_tell::stream::stream;
 use input::units::{DEG, MM};
 use input::{InputError, Place};
 use insertion::outcome::Outcome;
 use insertion::space::Design;
 use insertion::trial::{Sample, Tcp};
 use nalgebra::Vector3;
+use rand::RngExt;
 use std::fmt::Write as _;
 
 /// Smallest number of samples: 0.1 s at 500 Hz.
@@ -14,6 +18,12 @@ pub const FEWEST: usize = 50;
 pub const MOST: usize = 1_000_000;
 /// Longest duration of a log, s. It bounds the number of points after interpolation at regular times.
 pub const LONGEST_S: f64 = 600.0;
+
+/// Standard deviations along each axis of a typical force sensor, N: noise of a sample, bias, and linear drift until the
+/// end of a log.
+const NOISE_N: f64 = 0.5;
+const BIAS_N: f64 = 1.0;
+const DRIFT_N: f64 = 1.0;
 
 /// Required columns: time, TCP and force on the tool, in the task's frame.
 pub const COLUMNS: [&str; 8] = ["t_s", "x_mm", "y_mm", "z_mm", "tilt_deg", "fx_n", "fy_n", "fz_n"];
@@ -114,6 +124,31 @@ impl Log {
         text.push('\n');
         text
     }
+
+    /// Adds the errors of a force sensor to the log of a perfect one, from the random stream `number` of `seed`: bias,
+    /// drift, noise, and the inertial force of a tool below the sensor, kg.
+    pub fn add_sensor_errors(&mut self, tool_mass: f64, seed: u64, number: u64) {
+        let mut random = stream(seed, number, "sensor");
+        let mut normal =
+            |sd: f64| Vector3::from_fn(|_, _| sd * random.sample::<f64, _>(StandardNormal));
+        let (bias, drift) = (normal(BIAS_N), normal(DRIFT_N));
+        let positions = self.samples.iter().map(|sample| sample.tcp.position).collect();
+        let accelerations = rates(rates(positions));
+        let last = (accelerations.len() - 1) as f64;
+        for (i, LogSample { force, .. }) in self.samples.iter_mut().enumerate() {
+            let part = i as f64 / last;
+            *force += bias + part * drift + normal(NOISE_N) - tool_mass * accelerations[i];
+        }
+    }
+}
+
+/// Returns the time derivatives of points `STEP_S` apart, by central differences, one-sided at both ends.
+fn rates(points: Vec<Vector3<f64>>) -> Vec<Vector3<f64>> {
+    let rate = |i: usize| {
+        let (a, b) = (i.saturating_sub(1), (i + 1).min(points.len() - 1));
+        (points[b] - points[a]) / ((b - a) as f64 * STEP_S)
+    };
+    (0..points.len()).map(rate).collect()
 }
 
 impl LogSample {

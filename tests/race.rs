@@ -142,7 +142,7 @@ fn by_workers(studies: &Studies, errors: &str) -> String {
     let mut request: study::Request = parse(words).unwrap();
     request.out = Some(studies.dir("workers"));
     let Ok(mut guided) = request.open(None).and_then(AskTellStudy::new) else { panic!("no study") };
-    while let Ok(NextStep::Measure(works)) = guided.next_step(&AtomicBool::new(false)) {
+    while let Ok(NextStep::Evaluate(works)) = guided.next_step(&AtomicBool::new(false)) {
         for (proposal, work) in works.into_iter().rev() {
             let result = perform(&work, "a worker", &NEVER).unwrap_or_else(|e| panic!("{e}"));
             assert!(matches!(guided.take(proposal, &result), Ok(true)));

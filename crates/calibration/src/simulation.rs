@@ -104,7 +104,7 @@ mod tests {
         let simulation = Simulation::new(&evaluator, template, [].iter(), None, &NEVER);
         let found = simulation.window(&design, &[]).unwrap();
         let specimen = evaluator.apply(template, (&design, None), &[]).unwrap();
-        let own = evaluator.measure(&specimen, Search::default(), &Plan::WINDOW, &NEVER).unwrap();
+        let own = evaluator.simulate(&specimen, Search::default(), &Plan::WINDOW, &NEVER).unwrap();
         assert!(own.taught.is_some());
         assert_eq!(found, own);
     }

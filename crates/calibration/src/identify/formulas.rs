@@ -246,7 +246,7 @@ fn undrifted(probe: &Curves, sliding: impl Fn(usize) -> bool) -> Option<Vec<Vect
 /// Returns the slide over a range of points, along +y for a positive `sign`.
 fn slide(force: &[Vector3<f64>], sign: f64, range: Range<usize>) -> Slide {
     let ratio = |from: f64, to: f64| {
-        let place = |share: f64| range.start + (share * range.len() as f64) as usize;
+        let place = |part: f64| range.start + (part * range.len() as f64) as usize;
         let part = &force[place(from)..place(to)];
         let sum: Vector3<f64> = part.iter().sum();
         // Friction acts against the slide.

@@ -13,11 +13,11 @@ use rand::RngExt;
 use std::fmt::Write as _;
 
 /// Smallest number of samples: 0.1 s at 500 Hz.
-pub const FEWEST: usize = 50;
+pub const MIN_SAMPLES: usize = 50;
 /// Largest number of samples: 0.1 GB in memory.
-pub const MOST: usize = 1_000_000;
+pub const MAX_SAMPLES: usize = 1_000_000;
 /// Longest duration of a log, s. It bounds the number of points after interpolation at regular times.
-pub const LONGEST_S: f64 = 600.0;
+pub const MAX_DURATION_S: f64 = 600.0;
 
 /// Standard deviations along each axis of a typical force sensor, N: noise of a sample, bias, and linear drift until the
 /// end of a log.
@@ -50,7 +50,7 @@ pub struct LogSample {
 pub struct Log {
     /// Path of the file as given.
     pub file: String,
-    /// At least [`FEWEST`] and at most [`MOST`] samples.
+    /// At least [`MIN_SAMPLES`] and at most [`MAX_SAMPLES`] samples.
     pub samples: Vec<LogSample>,
 }
 
@@ -75,9 +75,11 @@ impl Log {
     /// If there are too few or too many, a number is not finite, time does not increase, or the log is too long.
     pub fn new(file: &str, samples: Vec<LogSample>) -> Result<Self, InputError> {
         let whole = |problem: String| Err(Place::file(file).fault(problem));
-        if !(FEWEST..=MOST).contains(&samples.len()) {
+        if !(MIN_SAMPLES..=MAX_SAMPLES).contains(&samples.len()) {
             let count = samples.len();
-            return whole(format!("has {count} samples; it must have {FEWEST} to {MOST}"));
+            return whole(format!(
+                "has {count} samples; it must have {MIN_SAMPLES} to {MAX_SAMPLES}"
+            ));
         }
         for (i, sample) in samples.iter().enumerate() {
             let problem = match i.checked_sub(1).and_then(|before| samples.get(before)) {
@@ -92,9 +94,9 @@ impl Log {
             return Err(Place::file(file).line(sample.line).fault(problem));
         }
         let lasts = samples[samples.len() - 1].time_s - samples[0].time_s;
-        if lasts > LONGEST_S {
+        if lasts > MAX_DURATION_S {
             return whole(format!(
-                "lasts {lasts:.0} s; an attempt lasts {LONGEST_S} s at most: cut the log, or mend its clock"
+                "lasts {lasts:.0} s; an attempt lasts {MAX_DURATION_S} s at most: cut the log, or mend its clock"
             ));
         }
         Ok(Log { file: file.to_owned(), samples })

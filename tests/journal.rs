@@ -154,11 +154,6 @@ proptest! {
             prop_assert_eq!(Recorded { timing, stiffness, ..read }, recorded);
         }
     }
-
-    #[test]
-    fn nothing_makes_a_reader_panic(line in "\\PC*", index in any::<u64>()) {
-        let _ = decode(&line, index);
-    }
 }
 
 /// Walks the grid by strides that depend on what it was told.

@@ -64,7 +64,7 @@ impl std::fmt::Display for Remark {
 /// Remarks on one log.
 pub(super) struct Remarks<'a> {
     pub(super) log: &'a Log,
-    found: Vec<Remark>,
+    all: Vec<Remark>,
 }
 
 impl Remarks<'_> {
@@ -72,7 +72,7 @@ impl Remarks<'_> {
     pub(super) fn add(&mut self, serious: bool, span: Option<[usize; 2]>, text: impl Into<String>) {
         let last = self.log.samples.len() - 1;
         let lines = span.map(|ends| ends.map(|at| self.log.samples[at.min(last)].line));
-        self.found.push(Remark { file: self.log.file.clone(), lines, text: text.into(), serious });
+        self.all.push(Remark { file: self.log.file.clone(), lines, text: text.into(), serious });
     }
 }
 
@@ -85,7 +85,7 @@ pub(super) fn remarks(file: &str, runs: &[Run], task: &Task) -> Vec<Remark> {
 
 /// Returns the remarks on one log; `rotated` if the forces of all logs are in a rotated frame.
 fn of_log(run: &Run, task: &Task, rotated: bool) -> Vec<Remark> {
-    let mut remarks = Remarks { log: &run.log, found: Vec::new() };
+    let mut remarks = Remarks { log: &run.log, all: Vec::new() };
     clock(&mut remarks);
     pose(&mut remarks, run, task);
     let touched = contact(&mut remarks).filter(|_| !rotated);
@@ -94,7 +94,7 @@ fn of_log(run: &Run, task: &Task, rotated: bool) -> Vec<Remark> {
     if let Some(touched) = touched {
         phases(&mut remarks, run, task, touched);
     }
-    remarks.found
+    remarks.all
 }
 
 /// Returns a remark if the forces are in another unit than newtons: if `ratio`, of measured to simulated forces along

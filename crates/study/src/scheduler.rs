@@ -197,11 +197,8 @@ impl Scheduler {
         result: ProposalResult,
         progress: &mut dyn FnMut(&Recorded),
     ) -> Result<bool, StudyError> {
-        let ProposalResult {
-            number,
-            evaluations: Evaluations { stiffness, tasks, cached },
-            timing,
-        } = result;
+        let ProposalResult { number, evaluations, timing } = result;
+        let Evaluations { stiffness, tasks, cached } = evaluations;
         let Some(design) = self.evaluating.remove(&number) else { return Ok(false) };
         let (index, proposal) = match study.config.asynchronous {
             true => (study.evaluations.len() as u64, Some(number)),

@@ -16,7 +16,7 @@ use std::path::Path;
 /// Largest size of a log, bytes: ten minutes at 500 Hz.
 pub const LARGEST_LOG: u64 = 64 << 20;
 /// Largest plausible coordinate of a position, m.
-const MAX_COORDINATE: f64 = 10.0;
+const MAX_REACH: f64 = 10.0;
 /// Largest coordinate of a log, mm, below which its unit is taken to be metres.
 const MIN_COORDINATE_MM: f64 = 1.0;
 /// Largest plausible median time between samples, s.
@@ -192,14 +192,13 @@ impl<'a> Table<'a> {
                 (tcp, target, frame.force_of_base(vector(force)))
             }
             None => {
-                let of =
-                    |place: &[f64]| match place.iter().find(|mm| mm.abs() > MAX_COORDINATE / MM) {
-                        Some(mm) => Err(format!(
-                            "a coordinate of {} looks like micrometres; give millimetres",
-                            shown(*mm)
-                        )),
-                        None => Ok(vector(place) * MM),
-                    };
+                let of = |place: &[f64]| match place.iter().find(|mm| mm.abs() > MAX_REACH / MM) {
+                    Some(mm) => Err(format!(
+                        "a coordinate of {} looks like micrometres; give millimetres",
+                        shown(*mm)
+                    )),
+                    None => Ok(vector(place) * MM),
+                };
                 if numbers[4].abs() > 90.0 {
                     return Err(format!("tilt_deg: is {}; it must lie in -90 .. 90", numbers[4]));
                 }
@@ -217,7 +216,7 @@ impl<'a> Table<'a> {
 /// Converts a pose, position (m) and axis-angle (rad), from the base's to the task's frame.
 fn of_base(frame: &Frame, pose: &[f64]) -> Result<Tcp, String> {
     let (place, turn) = pose.split_at(3);
-    if let Some(far) = place.iter().find(|m| m.abs() > MAX_COORDINATE) {
+    if let Some(far) = place.iter().find(|m| m.abs() > MAX_REACH) {
         let far = shown(*far);
         return Err(format!("a position of {far} looks like millimetres; RTDE records metres"));
     }

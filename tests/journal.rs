@@ -1,7 +1,6 @@
 //! The journal's lines and files: round trips, damage, failing writes, old versions.
 
-use crate::common::memory::{self, Memory};
-use crate::common::{Studies, read, sealed};
+use crate::common::{Studies, in_process, lines, read, sealed, strip_times};
 use ask_tell::GridPoint;
 use ask_tell::{Grid, Observation, Optimizer, StopReason};
 use insertion::evaluation::evaluator::{Evaluate, Evaluations};
@@ -19,8 +18,7 @@ use insertion::trial::fake::FakeRig;
 use proptest::prelude::*;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex};
-use study::{Ending, Recorded, StudyError, StudyRecord, Timing, decode, encode, strip_times};
+use study::{Ending, Recorded, StudyError, StudyRecord, Timing, decode, encode};
 
 const FIXTURE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures/study");
 
@@ -156,11 +154,6 @@ proptest! {
             prop_assert_eq!(Recorded { timing, stiffness, ..read }, recorded);
         }
     }
-
-    #[test]
-    fn nothing_makes_a_reader_panic(line in "\\PC*", index in any::<u64>()) {
-        let _ = decode(&line, index);
-    }
 }
 
 /// Walks the grid by strides that depend on what it was told.
@@ -217,32 +210,9 @@ fn walk(grid: Grid) -> Box<dyn Optimizer> {
     Box::new(Walk { grid, at: 0, stride: 1 })
 }
 
-/// Runs the fixture's configuration with its journal in `store`.
-fn run(dir: &Path, store: &Memory) -> Result<Ending, StudyError> {
-    Ok(memory::run(dir, store, &ClosedForm, &walk, 2)?.0)
-}
-
-#[test]
-fn whichever_write_fails_the_journal_stays_whole_and_the_study_goes_on() {
-    let studies = Studies::new();
-    let dir = folder(&studies);
-    let undisturbed = Memory::default();
-    assert_eq!(run(&dir, &undisturbed).unwrap(), Ending::BudgetSpent);
-    let expected = undisturbed.journal();
-    // The header is one write, each evaluation is one.
-    for writes in 0..11 {
-        for truncate_fails in [false, true] {
-            let failing = Memory { left: Some(writes), truncate_fails, ..Memory::default() };
-            let error = run(&dir, &failing).unwrap_err().to_string();
-            assert!(error.contains("journal.jsonl: cannot write"), "{error}");
-            if !truncate_fails {
-                assert!(expected.starts_with(&failing.journal()), "write {writes}");
-            }
-            let again = Memory { bytes: failing.bytes, ..Memory::default() };
-            assert_eq!(run(&dir, &again).unwrap(), Ending::BudgetSpent);
-            assert_eq!(again.journal(), expected, "write {writes}");
-        }
-    }
+/// Runs the study in a folder on two threads.
+fn run(dir: &Path) -> Result<Ending, StudyError> {
+    Ok(in_process::run(dir, &ClosedForm, &walk, 2)?.0)
 }
 
 /// Cannot evaluate a density of 3 levels above the lowest.
@@ -269,14 +239,12 @@ impl Evaluate for NotAll {
 #[test]
 fn a_design_that_cannot_be_stops_the_study_and_is_named() {
     let studies = Studies::new();
-    let dir = folder(&studies);
-    let store = Memory::default();
-    let error = memory::run(&dir, &store, &NotAll, &walk, 1).unwrap_err();
+    let error = in_process::run(&folder(&studies), &NotAll, &walk, 1).unwrap_err();
     assert!(error.is_bad_input());
     let error = error.to_string();
     assert!(error.contains("evaluation 2 of infill_density_percent = 13"), "{error}");
     assert!(error.contains("strategy.tilt_deg: is 90; it must lie"), "{error}");
-    assert_eq!(store.journal().lines().count(), 2 + 2);
+    assert_eq!(lines(&studies.dir("s/journal.jsonl")), 2 + 2);
 }
 
 struct Panics;
@@ -290,20 +258,18 @@ impl Evaluate for Panics {
 #[test]
 fn a_panic_in_a_measuring_thread_ends_the_study() {
     let studies = Studies::new();
-    let (dir, store) = (folder(&studies), Memory::default());
-    let panics = AssertUnwindSafe(|| memory::run(&dir, &store, &Panics, &walk, 2));
+    let dir = folder(&studies);
+    let panics = AssertUnwindSafe(|| in_process::run(&dir, &Panics, &walk, 2));
     assert!(catch_unwind(panics).is_err());
-    let again = run(&dir, &store).unwrap();
-    assert_eq!(again, Ending::BudgetSpent, "journal and lock are as they should be");
+    assert_eq!(run(&dir).unwrap(), Ending::BudgetSpent, "journal and lock are as they should be");
 }
 
 #[test]
 fn a_journal_of_other_proposals_is_refused() {
     let studies = Studies::new();
     let dir = folder(&studies);
-    let journal = read(Path::new(&format!("{FIXTURE}/journal.jsonl"))).into_bytes();
-    let bytes = Arc::new(Mutex::new(journal));
-    let error = run(&dir, &Memory { bytes, ..Memory::default() }).unwrap_err();
+    std::fs::copy(format!("{FIXTURE}/journal.jsonl"), dir.join("journal.jsonl")).unwrap();
+    let error = run(&dir).unwrap_err();
     let said = error.to_string();
     assert!(error.is_bad_input() && said.contains("evaluation 0 is of"), "{error}");
     assert!(said.contains("another version"), "{error}");

@@ -1,7 +1,6 @@
 //! Races for the success rate: exact, and the same whoever runs them and however often.
 
-use crate::common::Studies;
-use crate::common::memory::{self, Memory};
+use crate::common::{Studies, in_process};
 use ::study::StudyRecord;
 use ask_tell::{Grid, Optimizer, OptimizerKind, build};
 use finger_opt::command::parse;
@@ -19,7 +18,6 @@ use insertion::surrogate::Prediction;
 use insertion::trial::NEVER;
 use insertion::trial::fake::FakeRig;
 use proptest::prelude::*;
-use std::fs;
 use std::sync::atomic::AtomicBool;
 
 const FIXTURE: &str = include_str!("fixtures/study/study.toml");
@@ -66,27 +64,27 @@ fn table() -> impl Strategy<Value = Table> {
     })
 }
 
-/// A study of 24 evaluations in a folder of its own.
-struct Racing {
-    dir: tempfile::TempDir,
-    store: Memory,
-}
+/// A study of 24 evaluations.
+struct Racing(Studies);
 
 impl Racing {
     fn new(keys: &str, batch: u32) -> Self {
-        let dir = tempfile::tempdir().unwrap();
         let config = FIXTURE.replace("\"range\"", "\"success-rate\"");
         let config =
             config.replace("budget = 10\nbatch = 4", &format!("budget = 24\nbatch = {batch}"));
         let keys = format!("uncertainty = \"typical\"\n{keys}\n[provenance]");
-        fs::write(dir.path().join("study.toml"), config.replacen("[provenance]", &keys, 1))
-            .unwrap();
-        Racing { dir, store: Memory::default() }
+        let studies = Studies::new();
+        studies.file("study.toml", config.replacen("[provenance]", &keys, 1));
+        Racing(studies)
     }
 
     fn run(&self, table: &Table, threads: usize) -> StudyRecord {
         let random = |grid: Grid| -> Box<dyn Optimizer> { build(OptimizerKind::Random, grid, 3) };
-        memory::run(self.dir.path(), &self.store, table, &random, threads).unwrap().1
+        in_process::run(self.0.0.path(), table, &random, threads).unwrap().1
+    }
+
+    fn journal(&self) -> String {
+        self.0.journal(".")
     }
 }
 
@@ -95,7 +93,7 @@ fn rates(record: &StudyRecord) -> Vec<Option<f64>> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(48))]
+    #![proptest_config(ProptestConfig::with_cases(24))]
 
     /// The designs do not depend on what is told here, so both studies evaluate the same. On one
     /// thread results arrive in the order of their proposals, also those that are told as they come.
@@ -124,11 +122,10 @@ proptest! {
             prop_assert!(sound, "{rate:?}, at most {bound:?}, {best:?}");
         }
         // Killed anywhere, gone on with by any number of threads.
-        let expected = racing.store.journal();
-        let kept = (at * racing.store.bytes.lock().unwrap().len() as f64) as usize;
-        racing.store.bytes.lock().unwrap().truncate(kept);
+        let (expected, whole) = (racing.journal(), racing.0.read("journal.jsonl"));
+        racing.0.file("journal.jsonl", &whole[..(at * whole.len() as f64) as usize]);
         racing.run(&table, threads[1]);
-        prop_assert_eq!(racing.store.journal(), expected);
+        prop_assert_eq!(racing.journal(), expected);
     }
 }
 
@@ -145,7 +142,7 @@ fn by_workers(studies: &Studies, errors: &str) -> String {
     let mut request: study::Request = parse(words).unwrap();
     request.out = Some(studies.dir("workers"));
     let Ok(mut guided) = request.open(None).and_then(AskTellStudy::new) else { panic!("no study") };
-    while let Ok(NextStep::Measure(works)) = guided.next_step(&AtomicBool::new(false)) {
+    while let Ok(NextStep::Evaluate(works)) = guided.next_step(&AtomicBool::new(false)) {
         for (proposal, work) in works.into_iter().rev() {
             let result = perform(&work, "a worker", &NEVER).unwrap_or_else(|e| panic!("{e}"));
             assert!(matches!(guided.take(proposal, &result), Ok(true)));

@@ -78,7 +78,7 @@ fn resuming_asks_about_the_provenance_and_uses_no_cache_of_another_simulation() 
     let parts = ["measured with different settings", "source_sha256", "--accept-changed"];
     resume(&[]).fails(2, &parts);
     resume(&["--accept-changed"]).fails(2, &["all its 12 evaluations are done", "raise --budget"]);
-    assert_eq!(copy.journal("study"), study::strip_times(&read_fixture("study/journal.jsonl")));
+    assert_eq!(copy.journal("study"), common::strip_times(&read_fixture("study/journal.jsonl")));
     // Interrupted before its last evaluation.
     let journal = copy.read("study/journal.jsonl");
     let begun: Vec<&str> = journal.lines().take(2 + 11).collect();

@@ -72,7 +72,7 @@ impl Arguments {
             true => (ALLOWED_STEPS, "finer", ["production", "refined"]),
             false => (0, "search", ["walk", "strides"]),
         };
-        let found = pairs::measure(&tasks, &self.fingers.designs());
+        let found = pairs::simulate(&tasks, &self.fingers.designs());
         let failed = found.iter().filter(|pair| !pair.agrees(allowed)).count();
         match self.json {
             true => print_json(&pairs::json(&found, Some(allowed), setting, keys).into())?,

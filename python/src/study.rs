@@ -232,7 +232,7 @@ impl AskTellStudy {
         let step = step.ok_or_else(|| StudyError::new_err("the study is closed"))?;
         Ok(match step.map_err(exception)? {
             NextStep::Wait => (Vec::new(), None),
-            NextStep::Measure(work) => {
+            NextStep::Evaluate(work) => {
                 let bytes = |(proposal, work): (u64, Vec<u8>)| (proposal, PyBytes::new(py, &work));
                 (work.into_iter().map(bytes).collect(), None)
             }

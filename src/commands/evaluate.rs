@@ -99,7 +99,7 @@ impl Request {
         let chosen = self.finger.choose(&setup)?;
         let measured = self.measured(&chosen)?;
         let clock = Instant::now();
-        let evaluation = setup.evaluator.measure(&chosen.specimen, self.search(), &plan, stop);
+        let evaluation = setup.evaluator.simulate(&chosen.specimen, self.search(), &plan, stop);
         let evaluation = evaluation.map_err(Failure::input)?;
         not_stopped(stop)?;
         let wall_s = clock.elapsed().as_secs_f64();
@@ -153,7 +153,7 @@ impl Request {
         let Some(evaluator) = setup.by_ribs() else { return Ok(None) };
         let chosen = self.finger.choose_with(setup, &evaluator);
         let measured = chosen.and_then(|ChosenFinger { specimen, .. }| {
-            let found = evaluator.measure_or_teach(&specimen, self.search(), &Plan::WINDOW, stop);
+            let found = evaluator.simulate_or_teach(&specimen, self.search(), &Plan::WINDOW, stop);
             found.map_err(Failure::input)
         });
         not_stopped(stop)?;

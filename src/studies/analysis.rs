@@ -147,7 +147,7 @@ fn robots(
     let other = robot(if compliant { "ur5e_position" } else { "servo" })?;
     let specimen = &Specimen { robot: other, ..specimen.clone() };
     let plan = &Plan::WINDOW;
-    let found = setup.evaluator.measure_or_teach(specimen, Search::Walk, plan, stop);
+    let found = setup.evaluator.simulate_or_teach(specimen, Search::Walk, plan, stop);
     let found = found.map_err(Failure::input)?;
     not_stopped(stop)?;
     Ok(vec![own, window_with(&specimen.robot, found)?])

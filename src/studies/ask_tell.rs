@@ -25,7 +25,7 @@ pub struct AskTellStudy {
     optimizer: Box<dyn Optimizer + Send>,
     scheduler: Scheduler,
     /// Evaluations in progress, by the number of the proposal.
-    measuring: BTreeMap<u64, Work>,
+    evaluating: BTreeMap<u64, Work>,
     best_so_far: BestSoFar,
     log: ConfirmationLog,
 }
@@ -33,7 +33,7 @@ pub struct AskTellStudy {
 /// Next step of the caller.
 pub enum NextStep {
     /// Evaluate these proposals: number of each, and the encoded work, the argument of [`perform`].
-    Measure(Vec<(u64, Vec<u8>)>),
+    Evaluate(Vec<(u64, Vec<u8>)>),
     /// Wait for a result.
     Wait,
     /// Call [`finish`](AskTellStudy::finish).
@@ -57,8 +57,8 @@ impl AskTellStudy {
         let optimizer = optimizer(&open.setup, &open.study.config)?;
         let (scheduler, best_so_far) = (Scheduler::new(&open.study), BestSoFar::new(&open.study));
         let log = ConfirmationLog::open(&open.study);
-        let measuring = BTreeMap::new();
-        Ok(AskTellStudy { open, optimizer, scheduler, measuring, best_so_far, log })
+        let evaluating = BTreeMap::new();
+        Ok(AskTellStudy { open, optimizer, scheduler, evaluating, best_so_far, log })
     }
 
     /// Returns the next step. Designs in the cache are not evaluated again.
@@ -78,7 +78,7 @@ impl AskTellStudy {
                     not_stopped(stop)?;
                     self.scheduler.record_stagnation(stagnant);
                 }
-                Next::Measure(proposals) => {
+                Next::Evaluate(proposals) => {
                     let mut unknown = Vec::new();
                     for proposal in proposals {
                         if !self.accept_cached(&proposal)? {
@@ -86,7 +86,7 @@ impl AskTellStudy {
                         }
                     }
                     if !unknown.is_empty() {
-                        return Ok(NextStep::Measure(unknown));
+                        return Ok(NextStep::Evaluate(unknown));
                     }
                 }
             }
@@ -105,8 +105,8 @@ impl AskTellStudy {
         Proposal { number, design, race }: &Proposal,
     ) -> Result<bool, Failure> {
         let (known, timing) = Timing::of(|| self.evaluator().cached(design, race.as_ref()));
-        let Some(measured) = known else { return Ok(false) };
-        self.accept(ProposalResult { number: *number, measured, timing })
+        let Some(evaluations) = known else { return Ok(false) };
+        self.accept(ProposalResult { number: *number, evaluations, timing })
     }
 
     /// Records that a proposal is being evaluated; returns its number and its encoded work.
@@ -122,7 +122,7 @@ impl AskTellStudy {
             inputs: setup.inputs.clone(),
         };
         let bytes = work.encode().map_err(|error| Failure::running(error.to_string()))?;
-        self.measuring.insert(number, work);
+        self.evaluating.insert(number, work);
         Ok((number, bytes))
     }
 
@@ -131,14 +131,14 @@ impl AskTellStudy {
     /// # Errors
     /// If the result does not belong to the proposal, or the journal cannot be written.
     pub fn take(&mut self, number: u64, result: &[u8]) -> Result<bool, RejectedResult> {
-        let Some(work) = self.measuring.get(&number) else { return Ok(false) };
+        let Some(work) = self.evaluating.get(&number) else { return Ok(false) };
         let Proposal { design, race, .. } = &work.proposal;
         let impossible = |error| RejectedResult::Failed(Failure::input(error));
         let stiffness = self.open.setup.evaluator.predict(design).map_err(impossible)?;
         let result = work.check(result, stiffness).map_err(RejectedResult::Refused)?;
-        self.evaluator().store(design, race.as_ref(), &result.measured);
+        self.evaluator().store(design, race.as_ref(), &result.evaluations);
         let taken = self.accept(result).map_err(RejectedResult::Failed)?;
-        self.measuring.remove(&number);
+        self.evaluating.remove(&number);
         Ok(taken)
     }
 
@@ -211,7 +211,7 @@ pub fn perform(bytes: &[u8], worker: &str, stop: &AtomicBool) -> Result<Vec<u8>,
             Measure::RobustRange => work.robust_range,
             _ => false,
         })?;
-        let result = work.proposal.measure(&cached_evaluator(&setup, None, &plan, stop))?;
+        let result = work.proposal.evaluate(&cached_evaluator(&setup, None, &plan, stop))?;
         not_stopped(stop)?;
         work.encode_result(result).map_err(|error| Failure::running(error.to_string()))
     })

@@ -21,7 +21,7 @@ use subject::{Base, KINDS};
 /// Seconds of a run that nobody has asked to be longer.
 const SECONDS: u64 = 30;
 /// Failures after which it stops.
-const MOST_FAILURES: usize = 20;
+const MAX_FAILURES: usize = 20;
 
 /// How many cases of each kind ended how.
 type Counts = BTreeMap<(&'static str, &'static str), u64>;
@@ -59,7 +59,7 @@ fn work(seed: u64, end: Instant, base: &Base, counts: &Mutex<Counts>) -> Vec<Str
             }
             _ => break,
         }
-        if failures.len() >= MOST_FAILURES || Instant::now() > end {
+        if failures.len() >= MAX_FAILURES || Instant::now() > end {
             break;
         }
     }

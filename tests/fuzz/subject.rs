@@ -203,7 +203,7 @@ fn damaged_results(mutations: &[Mutation], out: &Path) -> How {
     let mut how = "accepted";
     loop {
         let works = match guided.next_step(&NEVER).map_err(failed)? {
-            NextStep::Measure(works) => works,
+            NextStep::Evaluate(works) => works,
             NextStep::Wait => bail!("it waits for a result that nobody was asked for"),
             NextStep::Finish(ending) => {
                 guided.finish(ending, &NEVER).map_err(failed)?;

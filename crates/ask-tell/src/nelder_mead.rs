@@ -12,7 +12,7 @@ const EDGE: f64 = 0.1;
 /// iteration takes microseconds.
 const MAX_ITERATIONS: u64 = 1000;
 /// Consecutive runs without a new point after which the search has converged.
-const BARREN_RUNS: u32 = 3;
+const STALLED_RUNS: u32 = 3;
 
 /// argmin's Nelder-Mead with an ask-and-tell interface. It minimises the negated merits.
 ///
@@ -29,7 +29,7 @@ pub(super) struct NelderMead {
     /// First simplex of the run: vertices on the free axes; empty if no observation has a value.
     simplex: Vec<Vec<f64>>,
     runs: i32,
-    barren_runs: u32,
+    stalled_runs: u32,
 }
 
 impl NelderMead {
@@ -37,7 +37,7 @@ impl NelderMead {
     pub fn new(grid: Grid, told: &[Observation]) -> Self {
         let costs = Costs::new(grid, 0);
         let (pending, simplex) = (Vec::new(), Vec::new());
-        let mut search = NelderMead { costs, pending, simplex, runs: 0, barren_runs: 0 };
+        let mut search = NelderMead { costs, pending, simplex, runs: 0, stalled_runs: 0 };
         search.tell(told);
         search.restart();
         search
@@ -45,15 +45,15 @@ impl NelderMead {
 
     /// Proposes up to `n` new points; none if the search has converged.
     pub fn ask(&mut self, n: usize) -> Vec<GridPoint> {
-        while n > 0 && self.simplex.len() > 1 && self.barren_runs < BARREN_RUNS {
+        while n > 0 && self.simplex.len() > 1 && self.stalled_runs < STALLED_RUNS {
             let mut points = self.missing(n);
             points.retain(|point| self.costs.proposed.insert(point));
             if !points.is_empty() {
-                self.barren_runs = 0;
+                self.stalled_runs = 0;
                 self.pending.clone_from(&points);
                 return points;
             }
-            self.barren_runs += 1;
+            self.stalled_runs += 1;
             self.restart();
         }
         Vec::new()

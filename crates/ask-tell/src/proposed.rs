@@ -10,7 +10,7 @@ const DRAWS: usize = 64;
 
 /// Set of proposed points, to prevent duplicates.
 #[derive(Debug, Clone)]
-pub(crate) struct Proposed {
+pub(crate) struct ProposedPoints {
     pub grid: Grid,
     pub seed: u64,
     points: BTreeSet<GridPoint>,
@@ -18,11 +18,11 @@ pub(crate) struct Proposed {
     cursor: Option<GridPoint>,
 }
 
-impl Proposed {
+impl ProposedPoints {
     /// Creates an empty set; `seed` is the seed of its optimizer's random streams.
     pub fn new(grid: Grid, seed: u64) -> Self {
         let cursor = grid.points().next();
-        Proposed { grid, seed, points: BTreeSet::new(), cursor }
+        ProposedPoints { grid, seed, points: BTreeSet::new(), cursor }
     }
 
     pub fn len(&self) -> u64 {
@@ -74,13 +74,13 @@ impl Proposed {
 /// Proposed points, and the costs (negated merits) of the observed ones; infinite for those without a merit.
 #[derive(Debug, Clone)]
 pub(crate) struct Costs {
-    pub proposed: Proposed,
+    pub proposed: ProposedPoints,
     pub by_point: BTreeMap<GridPoint, f64>,
 }
 
 impl Costs {
     pub fn new(grid: Grid, seed: u64) -> Self {
-        Costs { proposed: Proposed::new(grid, seed), by_point: BTreeMap::new() }
+        Costs { proposed: ProposedPoints::new(grid, seed), by_point: BTreeMap::new() }
     }
 
     pub fn tell(&mut self, observations: &[Observation]) {

@@ -1,18 +1,18 @@
 //! Non-adaptive optimizers.
 
 use super::{Grid, GridPoint, Observation, Optimizer, StopReason};
-use crate::proposed::Proposed;
+use crate::proposed::ProposedPoints;
 
 /// Optimizer that proposes the points of a sequence, each once, and then the remaining grid points.
 pub(crate) struct Sequence<I> {
-    proposed: Proposed,
+    proposed: ProposedPoints,
     points: I,
 }
 
 impl<I: Iterator<Item = GridPoint>> Sequence<I> {
     /// Creates the optimizer; `seed` determines the order of the remaining points.
     pub fn new(grid: Grid, seed: u64, points: I) -> Self {
-        Sequence { proposed: Proposed::new(grid, seed), points }
+        Sequence { proposed: ProposedPoints::new(grid, seed), points }
     }
 
     fn next(&mut self) -> Option<GridPoint> {

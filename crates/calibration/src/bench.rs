@@ -9,8 +9,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Simulated ranges of a task as a function of the uncertain parameters.
 pub trait Simulator: Sync {
-    /// Returns the range of a finger, mm; `shares` are the levels of the quantiles of the parameters' priors, 0 to 1.
-    fn range_mm(&self, finger: usize, shares: &[f64]) -> f64;
+    /// Returns the range of a finger, mm; `levels` are those of the quantiles of the parameters' priors, 0 to 1.
+    fn range_mm(&self, finger: usize, levels: &[f64]) -> f64;
 }
 
 /// Measured range of a finger, or lower bound of it.
@@ -45,14 +45,14 @@ pub struct Bench<'a> {
 
 impl Bench<'_> {
     /// Returns the levels of the quantiles of the parameters' priors at a sample, 0 to 1.
-    pub fn shares(&self, state: &[f64]) -> Vec<f64> {
+    pub fn levels(&self, state: &[f64]) -> Vec<f64> {
         self.parameters.iter().map(|&coordinate| normal_cdf(state[coordinate])).collect()
     }
 
     /// Returns the fingers of these indices with their simulated ranges at a sample.
     pub fn fingers(&self, numbers: &[usize], state: &[f64]) -> Vec<Finger> {
-        let shares = self.shares(state);
-        let range_mm = |number: usize| self.simulator.range_mm(number, &shares);
+        let levels = self.levels(state);
+        let range_mm = |number: usize| self.simulator.range_mm(number, &levels);
         numbers.iter().map(|&number| self.finger(number, range_mm(number))).collect()
     }
 
@@ -67,13 +67,13 @@ impl Bench<'_> {
     }
 
     /// Returns the simulated range of the finger of each observation, mm.
-    fn simulated_mm(&self, shares: &[f64]) -> Vec<f64> {
-        self.observations.iter().map(|one| self.simulator.range_mm(one.finger, shares)).collect()
+    fn simulated_mm(&self, levels: &[f64]) -> Vec<f64> {
+        self.observations.iter().map(|one| self.simulator.range_mm(one.finger, levels)).collect()
     }
 
     /// Conditions the process on the observations at a sample; `None` if their covariance is not positive definite.
     pub fn at(&self, state: &[f64]) -> Option<Conditioned> {
-        self.conditioned(state, &self.simulated_mm(&self.shares(state)))
+        self.conditioned(state, &self.simulated_mm(&self.levels(state)))
     }
 
     /// Conditions the process on the observations, given their simulated ranges.
@@ -108,11 +108,11 @@ pub fn sampled(
         benches.iter().map(|_| RefCell::default()).collect();
     let log_likelihood = |part: usize, state: &[f64]| {
         let bench = &benches[part];
-        let shares = bench.shares(state);
+        let levels = bench.levels(state);
         let mut cached = cached[part].borrow_mut();
-        if cached.0 != shares || cached.1.len() != bench.observations.len() {
-            let ranges = bench.simulated_mm(&shares);
-            *cached = (shares, ranges);
+        if cached.0 != levels || cached.1.len() != bench.observations.len() {
+            let ranges = bench.simulated_mm(&levels);
+            *cached = (levels, ranges);
         }
         bench.conditioned(state, &cached.1).map_or(f64::NEG_INFINITY, |at| at.log_likelihood())
     };
@@ -179,8 +179,8 @@ fn sample(
         }
         if sweep < warm_up && (sweep + 1).is_multiple_of(BATCH) {
             for (step, accepted) in step.iter_mut().zip(&mut accepted) {
-                let share = *accepted as f64 / BATCH as f64;
-                *step = (*step * libm::exp(1.5 * (share - ACCEPTED))).clamp(0.05, 4.0);
+                let rate = *accepted as f64 / BATCH as f64;
+                *step = (*step * libm::exp(1.5 * (rate - ACCEPTED))).clamp(0.05, 4.0);
                 *accepted = 0;
             }
         }

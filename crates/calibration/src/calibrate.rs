@@ -137,7 +137,8 @@ impl Calibration {
                     failure_positive,
                 }
             };
-            let each = ranges.into_iter().zip(shares_best(&drawn, fingers.len())).enumerate();
+            let each =
+                ranges.into_iter().zip(probabilities_best(&drawn, fingers.len())).enumerate();
             let left_out =
                 leave_one_out((&benches, i), &subject.designs, layout.dimension(), settings);
             TaskResult { predictions: each.map(prediction).collect(), left_out }
@@ -148,7 +149,7 @@ impl Calibration {
 }
 
 /// Returns the fraction of the draws in which each finger has the largest range.
-fn shares_best(drawn: &[Vec<f64>], fingers: usize) -> Vec<f64> {
+fn probabilities_best(drawn: &[Vec<f64>], fingers: usize) -> Vec<f64> {
     let mut counts = vec![0_u32; fingers];
     let best = |draw: &Vec<f64>| (0..fingers).max_by(|&a, &b| draw[a].total_cmp(&draw[b]));
     drawn.iter().filter_map(best).for_each(|best| counts[best] += 1);

@@ -77,13 +77,13 @@ impl Emulator {
                 // The caller that set the flag ignores this error.
                 return Err(no_fit());
             }
-            let (of_space, shares) = at.split_at(space.parameters.len());
-            let value = |(parameter, share): (&Variable, &f64)| {
+            let (of_space, levels) = at.split_at(space.parameters.len());
+            let value = |(parameter, unit): (&Variable, &f64)| {
                 let Variable { key, low, high, .. } = parameter;
-                (key.to_string(), low + share * (high - low))
+                (key.to_string(), low + unit * (high - low))
             };
             let design = Design(space.parameters.iter().zip(of_space).map(value).collect());
-            let evaluation = simulation.window(&design, shares)?;
+            let evaluation = simulation.window(&design, levels)?;
             done();
             let window = &evaluation.window;
             let class = |end: Option<Outcome>| FailureClass::try_from(end?.failure()?).ok();

@@ -122,7 +122,7 @@ pub fn advise(
         stop &= !next.is_empty() || gains.iter().all(|gain| gain.choice_mm < cost_mm);
         let deviations = given.deviations.iter().map(|draw| draw[column]);
         let values = sorted(deviations.map(|deviation| given.means[column] + deviation));
-        let tail = |share: f64| quantile(&values, share).unwrap_or(0.0).max(0.0);
+        let tail = |level: f64| quantile(&values, level).unwrap_or(0.0).max(0.0);
         let (low_mm, high_mm) = (tail((1.0 - INTERVAL) / 2.0), tail((1.0 + INTERVAL) / 2.0));
         let expected_mm = given.means[column].max(0.0);
         let tried: Vec<StiffnessPoint> =

@@ -98,7 +98,7 @@ fn from_draws(
     let one = |(i, number): (usize, &usize)| {
         let values = sorted(drawn.iter().map(|draw| draw[i]));
         let at =
-            |share: f64| values.get((share * values.len() as f64) as usize).copied().unwrap_or(0.0);
+            |level: f64| values.get((level * values.len() as f64) as usize).copied().unwrap_or(0.0);
         Predicted {
             mean_mm: mean(&values).unwrap_or(0.0),
             low_mm: at(TAIL).max(0.0),
@@ -118,9 +118,8 @@ fn quantile(parts: &[[f64; 3]], probability: f64) -> f64 {
     for _ in 0..50 {
         let middle = (low + high) / 2.0;
         let below = |[mean, sd, _]: &[f64; 3]| normal_cdf((middle - mean) / sd.max(1e-9));
-        let share = mean(parts.iter().map(below));
-        *(if share.is_some_and(|share| share < probability) { &mut low } else { &mut high }) =
-            middle;
+        let cdf = mean(parts.iter().map(below));
+        *(if cdf.is_some_and(|cdf| cdf < probability) { &mut low } else { &mut high }) = middle;
     }
     (low + high) / 2.0
 }

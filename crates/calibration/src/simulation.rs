@@ -5,14 +5,13 @@ use insertion::evaluation::Evaluation;
 use insertion::evaluation::evaluator::{Evaluator, Specimen};
 use insertion::evaluation::robustness::Plan;
 use insertion::evaluation::template::{DesignError, Template};
-use insertion::evaluation::tolerance::{self, Search};
+use insertion::evaluation::tolerance::Search;
 use insertion::outcome::Outcome;
 use insertion::space::Design;
-use insertion::trial::Grasp;
 use parameters::Parameter;
 use std::path::PathBuf;
-use std::sync::atomic::{AtomicBool, Ordering};
-use study::Cache;
+use std::sync::atomic::AtomicBool;
+use study::{Cache, CachedEvaluator};
 
 /// Shifts of the start, mm, tried in turn if the trial from the task's start does not insert: an operator would teach a
 /// start that does.
@@ -43,21 +42,21 @@ impl<'a> Simulation<'a> {
         Simulation { evaluator, template, parameters, cache, stop }
     }
 
-    /// Simulates the window of a design at `shares`, the levels of the quantiles of the parameters' priors (0 to 1); if
-    /// they are empty, with the values of the input files.
-    pub fn window(&self, design: &Design, shares: &[f64]) -> Result<Evaluation, DesignError> {
-        let values = self.parameters.iter().zip(shares).map(|(p, &share)| (*p, p.at(share)));
+    /// Simulates the window of a design at these levels of the quantiles of the parameters' priors (0 to 1); if there
+    /// are none, with the values of the input files.
+    pub fn window(&self, design: &Design, levels: &[f64]) -> Result<Evaluation, DesignError> {
+        let values = self.parameters.iter().zip(levels).map(|(p, &level)| (*p, p.at(level)));
         let values: Vec<_> = values.collect();
         let specimen = self.evaluator.apply(self.template, (design, None), &values)?;
         let inserts = |found: &Evaluation| found.window.nominal == Outcome::Inserted;
-        let own = self.measure(&specimen)?;
+        let own = self.simulate(&specimen)?;
         if inserts(&own) {
             return Ok(own);
         }
         for shift in SHIFTS_MM {
             let mut specimen = specimen.clone();
             specimen.task.strategy.start[1] += shift * MM;
-            let evaluation = self.measure(&specimen)?;
+            let evaluation = self.simulate(&specimen)?;
             if inserts(&evaluation) {
                 return Ok(evaluation);
             }
@@ -66,24 +65,47 @@ impl<'a> Simulation<'a> {
     }
 
     /// Simulates the window of a specimen, or returns the cached one.
-    fn measure(&self, specimen: &Specimen) -> Result<Evaluation, DesignError> {
-        let engine = self.evaluator.engine;
-        let new = |dir: &PathBuf| Cache::new(dir, &specimen.robot, &engine.record());
-        let cache = self.cache.as_ref().map(new);
-        let search = Search::default();
-        let keep =
-            cache.as_ref().map(|cache| (cache, cache.key(&(specimen, search, &Plan::WINDOW))));
-        if let Some(found) = keep.as_ref().and_then(|(cache, key)| cache.get(key)) {
-            return Ok(found);
-        }
-        let rig = self.evaluator.rig(specimen, None, 1.0)?;
-        let grasp = Grasp { stop: self.stop, ..Grasp::of(&specimen.finger) };
-        let evaluation = tolerance::evaluate_grasp(&*rig, grasp, search);
-        if let Some((cache, key)) = keep
-            && !self.stop.load(Ordering::SeqCst)
-        {
-            cache.put(&key, &evaluation);
-        }
-        Ok(evaluation)
+    fn simulate(&self, specimen: &Specimen) -> Result<Evaluation, DesignError> {
+        let evaluator = self.evaluator;
+        let new = |dir: &PathBuf| Cache::new(dir, &specimen.robot, &evaluator.engine.record());
+        let cache = &self.cache.as_ref().map(new);
+        let (search, plan, stop) = (Search::default(), &Plan::WINDOW, self.stop);
+        let cached = CachedEvaluator { evaluator, search, plan, cache: cache.as_ref(), stop };
+        Ok(cached.evaluate_specimen(specimen, plan)?.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use finray::printed::PrintedFinger;
+    use input::shipped::{FINGERS, ROBOTS, STIFFNESS, TASKS};
+    use insertion::finger::model::FingerSource;
+    use insertion::robot::Robot;
+    use insertion::trial::NEVER;
+    use insertion::trial::engine::EngineKind;
+    use insertion::{stiffness, surrogate};
+
+    /// Studies share the cache, and search about the taught start.
+    #[test]
+    fn windows_of_a_taught_start_are_those_of_a_study() {
+        let measured = stiffness::parse(STIFFNESS[0].text, STIFFNESS[0].file).unwrap();
+        let printed = PrintedFinger::parse(FINGERS[0].text, FINGERS[0].file).unwrap();
+        let task = TASKS[0].text.replace("[strategy]", "[strategy]\nstart = \"taught\"");
+        let evaluator = Evaluator {
+            surrogate: surrogate::fit(&measured, &printed).unwrap().into(),
+            fingers: FingerSource::Paper,
+            templates: vec![Template::parse(&task, TASKS[0].file).unwrap()],
+            robot: Robot::parse(ROBOTS[0].text, ROBOTS[0].file).unwrap(),
+            engine: EngineKind::Fake,
+            cell: None,
+        };
+        let (template, design) = (&evaluator.templates[0], Design::infill(20.0, 10.0));
+        let simulation = Simulation::new(&evaluator, template, [].iter(), None, &NEVER);
+        let found = simulation.window(&design, &[]).unwrap();
+        let specimen = evaluator.apply(template, (&design, None), &[]).unwrap();
+        let own = evaluator.simulate(&specimen, Search::default(), &Plan::WINDOW, &NEVER).unwrap();
+        assert!(own.taught.is_some());
+        assert_eq!(found, own);
     }
 }

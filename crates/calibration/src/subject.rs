@@ -34,7 +34,7 @@ pub struct Subject {
     /// Point of each finger in the process of the discrepancy.
     places: Vec<StiffnessPoint>,
     /// Position of each finger in the unit cube of the space, for the emulator.
-    shares: Vec<Vec<f64>>,
+    unit: Vec<Vec<f64>>,
     /// Parameters of its simulation, in order.
     pub parameters: Vec<Parameter>,
 }
@@ -73,10 +73,10 @@ impl Subject {
         };
         let stiffness =
             designs.iter().map(stiffness).collect::<Result<Vec<_>, CalibrationError>>()?;
-        let shares = designs.iter().map(|design| space.shares(design)).collect();
+        let unit = designs.iter().map(|design| space.shares(design)).collect();
         let places = standardised(&stiffness, of_space);
         let parameters = simulation.parameters.iter().copied().cloned().collect();
-        Ok(Subject { task, designs, of_space, emulator, experiments, places, shares, parameters })
+        Ok(Subject { task, designs, of_space, emulator, experiments, places, unit, parameters })
     }
 
     /// Returns the index of a design.
@@ -131,7 +131,7 @@ impl Subject {
         };
         let mut nearest: Vec<_> = self.experiments.iter().collect();
         nearest.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
-        let simulated = self.emulator.failures(&self.shares[finger], 4 * NEAREST);
+        let simulated = self.emulator.failures(&self.unit[finger], 4 * NEAREST);
         [0, 1].map(|end| {
             let class = |line: &Experiment| [line.failure_negative, line.failure_positive][end];
             let known = nearest.iter().filter_map(|(_, line)| class(line));
@@ -141,8 +141,8 @@ impl Subject {
 }
 
 impl Simulator for Subject {
-    fn range_mm(&self, finger: usize, shares: &[f64]) -> f64 {
-        self.emulator.range_mm(&[&self.shares[finger], shares].concat())
+    fn range_mm(&self, finger: usize, levels: &[f64]) -> f64 {
+        self.emulator.range_mm(&[&self.unit[finger], levels].concat())
     }
 }
 
@@ -186,7 +186,7 @@ fn shape(design: &Design) -> Design {
 fn designed(space: &Space, count: usize, purpose: &str) -> Vec<Design> {
     let grid = Grid::new(space.levels());
     let set = SobolSequence::new(grid.dimension(), 0, 0, purpose).take(count);
-    set.map(|shares| space.design(&grid.cell(&shares))).collect()
+    set.map(|unit| space.design(&grid.cell(&unit))).collect()
 }
 
 /// Returns a measured design with all parameters of the space; missing values are those of the task file, else the

@@ -39,8 +39,8 @@ pub fn updates(calibration: &Calibration) -> Vec<ParameterUpdate> {
     let one = |(i, Coordinate { parameter, task }): (usize, &Coordinate)| {
         let values = sorted(coordinate(calibration, i));
         let moments = Moments::of(coordinate(calibration, i));
-        let before = |share: f64| parameter.at(share);
-        let after = |share: f64| parameter.at(normal_cdf(quantile(&values, share).unwrap_or(0.0)));
+        let before = |level: f64| parameter.at(level);
+        let after = |level: f64| parameter.at(normal_cdf(quantile(&values, level).unwrap_or(0.0)));
         ParameterUpdate {
             name: parameter.name.clone(),
             task: task.clone(),

@@ -20,9 +20,9 @@ struct MadeUp {
 }
 
 impl Simulator for MadeUp {
-    fn range_mm(&self, finger: usize, shares: &[f64]) -> f64 {
+    fn range_mm(&self, finger: usize, levels: &[f64]) -> f64 {
         let [x, y] = self.places[finger];
-        let (a, b) = (shares[0], shares[1]);
+        let (a, b) = (levels[0], levels[1]);
         5.0 + 1.5 * (a - 0.5) * x + 2.0 * (b - 0.5) + 0.5 * y * (1.0 - a)
     }
 }
@@ -68,9 +68,9 @@ fn calibrated(number: u64, discrepancy: f64, noise: f64) -> Outcome {
     let hidden = [normal(), normal()];
     let [a, b, c] = [normal(), normal(), 0.5 * normal()].map(|sd| SCALE_MM * discrepancy * sd);
     let all: Vec<usize> = (0..FINGERS).collect();
-    let shares = hidden.map(normal_cdf);
+    let levels = hidden.map(normal_cdf);
     let beside = |[x, y]: StiffnessPoint| a + b * x + c * libm::sin(2.0 * y);
-    let of = |&i: &usize| simulator.range_mm(i, &shares) + beside(simulator.places[i]);
+    let of = |&i: &usize| simulator.range_mm(i, &levels) + beside(simulator.places[i]);
     let truth: Vec<f64> = all.iter().map(of).collect();
     let measured = |i: &usize| i % 2 == (number % 2) as usize;
     let mut observation = |finger: usize| {

@@ -1,9 +1,7 @@
 //! Logs of simulated cells with a fault each: the checks report its likely cause, and nothing for logs without a fault.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use ask_tell::normal::StandardNormal;
-use ask_tell::stream::stream;
-use calibration::identify::log::{Log, Run, of_samples};
+use calibration::identify::log::{Run, of_samples};
 use calibration::identify::question::Identification;
 use calibration::identify::read;
 use finray::printed::PrintedFinger;
@@ -19,8 +17,6 @@ use insertion::space::Design;
 use insertion::trial::engine::EngineKind;
 use insertion::trial::{Course, Grasp, NEVER, Probe};
 use insertion::{stiffness, surrogate};
-use nalgebra::Vector3;
-use rand::RngExt;
 use rayon::prelude::*;
 
 /// True parameters of each cell and starts of its attempts, from the reference results.
@@ -124,34 +120,12 @@ fn recorded(evaluator: &Evaluator, cell: u64) -> Vec<Recorded> {
                 }
             };
             let mut log = of_samples("a.csv", &samples).unwrap();
-            sense(&mut log, cell, all.len() as u64);
+            log.add_sensor_errors(TOOL_KG, cell, all.len() as u64);
             let (design, offset_mm) = (infill.clone(), start.unwrap_or(0.0));
             all.push(Recorded { design, offset_mm, outcome, text: log.csv() });
         }
     }
     all
-}
-
-/// Adds the inertial force of the tool, and noise, bias and drift of the sensor.
-fn sense(log: &mut Log, cell: u64, number: u64) {
-    let mut random = stream(cell, number, "sensor");
-    let mut normal =
-        |sd: f64| Vector3::from_fn(|_, _| sd * random.sample::<f64, _>(StandardNormal));
-    let (bias, drift) = (normal(1.0), normal(1.0));
-    let last = log.samples.len() - 1;
-    let rates = |of: Vec<Vector3<f64>>| -> Vec<Vector3<f64>> {
-        let rate = |i: usize| {
-            let (a, b) = (i.saturating_sub(1), (i + 1).min(last));
-            (of[b] - of[a]) / ((b - a) as f64 * EVERY_S)
-        };
-        (0..=last).map(rate).collect()
-    };
-    let accelerations =
-        rates(rates(log.samples.iter().map(|sample| sample.tcp.position).collect()));
-    for (i, sample) in log.samples.iter_mut().enumerate() {
-        let share = i as f64 / last as f64;
-        sample.force += bias + share * drift + normal(0.5) - TOOL_KG * accelerations[i];
-    }
 }
 
 /// Changes a log's table; the columns are t, x, y, z, tilt, fx, fy, fz, target x, y and z.

@@ -29,12 +29,12 @@ pub struct CachedEvaluator<'a> {
 impl Evaluate for CachedEvaluator<'_> {
     fn evaluate(&self, design: &Design, race: Option<&Race>) -> Result<Evaluations, DesignError> {
         let (plan, mut cached) = (self.plan.against(race), Vec::new());
-        let measured = self.evaluator.evaluate_by(design, |specimen| {
-            let (evaluation, was_cached) = self.measure(specimen, &plan)?;
+        let evaluations = self.evaluator.evaluate_by(design, |specimen| {
+            let (evaluation, was_cached) = self.evaluate_specimen(specimen, &plan)?;
             cached.push(was_cached);
             Ok(evaluation)
         })?;
-        Ok(Evaluations { cached, ..measured })
+        Ok(Evaluations { cached, ..evaluations })
     }
 }
 
@@ -53,11 +53,11 @@ impl CachedEvaluator<'_> {
     }
 
     /// Stores the evaluations by a worker in the cache.
-    pub fn store(&self, design: &Design, race: Option<&Race>, measured: &Evaluations) {
+    pub fn store(&self, design: &Design, race: Option<&Race>, evaluations: &Evaluations) {
         let Some(cache) = self.cache else { return };
         let plan = self.plan.against(race);
-        for (template, evaluation) in self.evaluator.templates.iter().zip(&measured.tasks) {
-            if let Ok(specimen) = self.evaluator.specimen(template, design, measured.stiffness) {
+        for (template, evaluation) in self.evaluator.templates.iter().zip(&evaluations.tasks) {
+            if let Ok(specimen) = self.evaluator.specimen(template, design, evaluations.stiffness) {
                 cache.put(&self.key(cache, &specimen, &plan), evaluation);
             }
         }
@@ -72,7 +72,7 @@ impl CachedEvaluator<'_> {
     ///
     /// # Errors
     /// If the design cannot be simulated.
-    pub fn measure(
+    pub fn evaluate_specimen(
         &self,
         specimen: &Specimen,
         plan: &Plan,
@@ -81,7 +81,7 @@ impl CachedEvaluator<'_> {
         if let Some(found) = entry.as_ref().and_then(|(cache, key)| cache.get(key)) {
             return Ok((found, true));
         }
-        let evaluation = self.evaluator.measure(specimen, self.search, plan, self.stop)?;
+        let evaluation = self.evaluator.simulate(specimen, self.search, plan, self.stop)?;
         // A cancelled evaluation may lack trials.
         if let Some((cache, key)) = entry.filter(|_| !self.stop.load(Ordering::SeqCst)) {
             cache.put(&key, &evaluation);

@@ -205,11 +205,12 @@ impl Confirmer<'_> {
 
     /// Evaluates a design with the stiffnesses computed from its ribs.
     fn computed(&self, evaluator: &Evaluator, design: &Design) -> ByRibs {
-        let measured = evaluator.evaluate_by(design, |specimen| {
-            evaluator.measure_or_teach(specimen, Search::default(), &Plan::WINDOW, self.walker.stop)
+        let (search, plan, stop) = (Search::default(), &Plan::WINDOW, self.walker.stop);
+        let evaluations = evaluator.evaluate_by(design, |specimen| {
+            evaluator.simulate_or_teach(specimen, search, plan, stop)
         });
-        match measured {
-            Ok(found) => ByRibs::Measured(found.tasks),
+        match evaluations {
+            Ok(evaluations) => ByRibs::Measured(evaluations.tasks),
             Err(why) => ByRibs::Refused(why.to_string()),
         }
     }
@@ -223,7 +224,7 @@ impl Confirmer<'_> {
         seed: u64,
     ) -> Result<Vec<FirmResult>, StudyError> {
         let CachedEvaluator { evaluator, stop, .. } = self.walker;
-        let measure = |(at, (template, task)): (usize, (&Template, &Evaluation))| {
+        let firm_on = |(at, (template, task)): (usize, (&Template, &Evaluation))| {
             if let Some(Some(firm)) = known.get(at) {
                 return Ok(*firm);
             }
@@ -231,7 +232,7 @@ impl Confirmer<'_> {
             Ok(evaluator.firm(&specimen, task, seed, stop)?)
         };
         let tasks = evaluator.templates.iter().zip(&recorded.tasks).enumerate();
-        let firm: Result<Vec<FirmResult>, DesignError> = tasks.map(measure).collect();
+        let firm: Result<Vec<FirmResult>, DesignError> = tasks.map(firm_on).collect();
         firm.map_err(|source| StudyError::impossible(recorded.index, &recorded.design, source))
     }
 }

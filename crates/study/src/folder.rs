@@ -16,15 +16,14 @@ use super::config::{AnalysisSettings, StudyConfig};
 use super::confirmed;
 use super::error::StudyError;
 use super::header;
-use super::journal::{self, Contents, Journal};
+use super::journal::{self, Contents, JOURNAL_FILE, Journal};
 use super::limits::ForceLimits;
-use super::lock::{Lock, UNKNOWN_OWNER, lock};
+use super::lock::{Lock, lock};
 use super::on_bench::BenchPrediction;
 use super::provenance::{Provenance, Segment};
 use super::record::{Recorded, StudyRecord, first_current};
 use super::rule::Rule;
 use super::seal::sha256_hex;
-use super::store::{FileStore, Store};
 use input::files::{self, LARGEST_INPUT, LARGEST_OWN};
 use insertion::finger::file::FingerFile;
 use serde::Serialize;
@@ -37,8 +36,6 @@ use std::path::{Path, PathBuf};
 
 /// File of the configuration.
 pub const CONFIG_FILE: &str = "study.toml";
-/// File of the journal.
-pub const JOURNAL_FILE: &str = "journal.jsonl";
 const INPUTS: &str = "inputs";
 /// Role of the finger file among the inputs.
 pub const FINGER: &str = "finger";
@@ -83,9 +80,9 @@ impl Study {
     ) -> Result<Study, StudyError> {
         fs::create_dir_all(dir).map_err(StudyError::io("create the folder", dir))?;
         let lock = lock(dir)?;
-        if has_config(dir)? && has_begun(dir) {
+        if has_config(dir) && has_begun(dir) {
             check_continues(dir, config)?;
-            let mut study = Study::open_locked(dir, lock, journal_file(dir)?)?;
+            let mut study = Study::open_locked(dir, lock)?;
             let before = (study.config.budget, study.config.settles);
             // With early stopping the budget is only a limit.
             let least = if before.1 { study.evaluations.len() as u64 } else { before.0 };
@@ -98,13 +95,13 @@ impl Study {
             }
             return Ok(study);
         }
-        if has_config(dir)? {
+        if has_config(dir) {
             // Created without a journal: the batch may depend on the number of workers.
             let batch = read_config(dir)?.batch;
             check_continues(dir, &StudyConfig { batch, ..config.clone() })?;
         }
         begin(dir, config, inputs)?;
-        Study::open_locked(dir, lock, journal_file(dir)?)
+        Study::open_locked(dir, lock)
     }
 
     /// Writes a study without a journal to `dir`; an existing study is not changed.
@@ -112,7 +109,7 @@ impl Study {
     /// # Errors
     /// If the folder holds a study of another configuration or cannot be written.
     pub fn create(dir: &Path, config: &StudyConfig, inputs: &Inputs) -> Result<(), StudyError> {
-        if has_config(dir)? {
+        if has_config(dir) {
             return check_continues(dir, config);
         }
         fs::create_dir_all(dir).map_err(StudyError::io("create the folder", dir))?;
@@ -127,22 +124,12 @@ impl Study {
     pub fn resume(dir: &Path) -> Result<Study, StudyError> {
         // Before the lock, which would create a file in a folder without a study.
         read_config(dir)?;
-        let lock = lock(dir)?;
-        Study::open_locked(dir, lock, journal_file(dir)?)
+        Study::open_locked(dir, lock(dir)?)
     }
 
-    /// Opens the study in `dir` with its journal in `store` in place of the file.
-    ///
-    /// # Errors
-    /// See [`resume`](Self::resume).
-    pub fn resume_with(dir: &Path, store: Box<dyn Store>) -> Result<Study, StudyError> {
-        read_config(dir)?;
-        Study::open_locked(dir, lock(dir)?, store)
-    }
-
-    fn open_locked(dir: &Path, lock: Lock, store: Box<dyn Store>) -> Result<Study, StudyError> {
+    fn open_locked(dir: &Path, lock: Lock) -> Result<Study, StudyError> {
         let config = read_config(dir)?;
-        let (journal, contents) = Journal::open(store, &dir.join(JOURNAL_FILE), &config)?;
+        let (journal, contents) = Journal::open(dir, &config)?;
         // New file names then survive a power failure; not every system supports this.
         if cfg!(unix) {
             let sync = File::open(dir).and_then(|folder| folder.sync_all());
@@ -210,7 +197,7 @@ impl Study {
     ///
     /// # Errors
     /// If it was.
-    pub fn check_journal(&mut self) -> Result<(), StudyError> {
+    pub fn check_journal(&self) -> Result<(), StudyError> {
         self.journal.check()
     }
 
@@ -290,18 +277,6 @@ impl StudyRecord {
     }
 }
 
-/// Opens the journal of the study in `dir`.
-fn journal_file(dir: &Path) -> Result<Box<dyn Store>, StudyError> {
-    let path = dir.join(JOURNAL_FILE);
-    let store = FileStore::open(&path).map_err(|error| match error.kind() {
-        io::ErrorKind::WouldBlock => {
-            StudyError::Locked { dir: dir.to_owned(), owner: UNKNOWN_OWNER.to_owned() }
-        }
-        _ => StudyError::io("open", &path)(error),
-    })?;
-    Ok(Box::new(store))
-}
-
 /// Writes the inputs and the configuration of a study to `dir`.
 fn begin(dir: &Path, config: &StudyConfig, inputs: &Inputs) -> Result<(), StudyError> {
     if has_begun(dir) {
@@ -321,9 +296,8 @@ pub fn has_begun(dir: &Path) -> bool {
 }
 
 /// Returns whether a folder holds the configuration of a study.
-fn has_config(dir: &Path) -> Result<bool, StudyError> {
-    let file = dir.join(CONFIG_FILE);
-    file.try_exists().map_err(StudyError::io("look for", &file))
+fn has_config(dir: &Path) -> bool {
+    dir.join(CONFIG_FILE).exists()
 }
 
 /// Checks that the study in a folder can be continued with a configuration.

@@ -6,19 +6,22 @@
 
 use super::config::StudyConfig;
 use super::error::{LineError, StudyError};
+use super::lock::{Lock, UNKNOWN_OWNER};
 use super::provenance::Segment;
 use super::record::Recorded;
-use super::store::Store;
 use super::{header, line};
 use input::files::{self, LARGEST_JOURNAL};
-use std::fs::File;
-use std::io;
+use std::fs::{self, File};
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+
+/// File of the journal in the folder of a study.
+pub const JOURNAL_FILE: &str = "journal.jsonl";
 
 /// Journal that is open for writing.
 pub struct Journal {
     pub(super) path: PathBuf,
-    store: Box<dyn Store>,
+    file: Lock,
     /// Length of the complete, synced lines, bytes.
     len: u64,
     /// Whether a write failed; later ones are then refused.
@@ -36,19 +39,26 @@ pub struct Contents {
 }
 
 impl Journal {
-    /// Opens the journal of a study, or begins it if the store is empty, and returns its contents;
-    /// `path` is named in errors.
-    pub fn open(
-        mut store: Box<dyn Store>,
-        path: &Path,
-        config: &StudyConfig,
-    ) -> Result<(Journal, Contents), StudyError> {
-        let bytes = store.read().map_err(StudyError::io("read", path))?;
-        let (contents, len) = parse(&bytes, path, config)?;
+    /// Opens and locks the journal of the study in `dir`, or begins it if there is none, and returns its contents.
+    ///
+    /// # Errors
+    /// If another process has locked it, it is damaged, or it cannot be read or written.
+    pub fn open(dir: &Path, config: &StudyConfig) -> Result<(Journal, Contents), StudyError> {
+        let path = dir.join(JOURNAL_FILE);
+        let mut file = open_locked(&path).map_err(|error| match error.kind() {
+            io::ErrorKind::WouldBlock => {
+                StudyError::Locked { dir: dir.to_owned(), owner: UNKNOWN_OWNER.to_owned() }
+            }
+            _ => StudyError::io("open", &path)(error),
+        })?;
+        let bytes = files::read_up_to(&mut file.0, LARGEST_JOURNAL)
+            .map_err(StudyError::io("read", &path))?;
+        let (contents, len) = parse(&bytes, &path, config)?;
+        let mut journal = Journal { path, file, len, broken: false };
         if len < bytes.len() as u64 {
-            store.truncate(len).map_err(StudyError::io("cut the torn last line off", path))?;
+            let cut = journal.truncate();
+            cut.map_err(StudyError::io("cut the torn last line off", &journal.path))?;
         }
-        let mut journal = Journal { path: path.to_owned(), store, len, broken: false };
         if len == 0 {
             journal.write(header::encode(config))?;
         }
@@ -56,10 +66,30 @@ impl Journal {
     }
 
     /// Checks that the journal was not changed by another program.
-    pub fn check(&mut self) -> Result<(), StudyError> {
-        self.store
-            .check(self.len)
-            .map_err(|problem| StudyError::JournalChanged { path: self.path.clone(), problem })
+    pub fn check(&self) -> Result<(), StudyError> {
+        let changed = |problem| StudyError::JournalChanged { path: self.path.clone(), problem };
+        self.unchanged().map_err(changed)
+    }
+
+    /// Checks that the path leads to the open file, and its length; the error is the change.
+    fn unchanged(&self) -> Result<(), String> {
+        let inaccessible = |error: io::Error| format!("is no longer accessible: {error}");
+        let found = match fs::symlink_metadata(&self.path) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => {
+                return Err("was removed or renamed".to_owned());
+            }
+            found => found.map_err(inaccessible)?,
+        };
+        if !files::is_open_file(&found, &self.file.0).map_err(inaccessible)? {
+            return Err("was replaced by another file".to_owned());
+        }
+        let (bytes, written) = (found.len(), self.len);
+        if bytes != written {
+            return Err(format!(
+                "was changed by another program: it has {bytes} bytes, {written} were written"
+            ));
+        }
+        Ok(())
     }
 
     /// Appends encoded lines; they then survive a power failure.
@@ -69,19 +99,39 @@ impl Journal {
             return Err(self.failed(io::Error::other("an earlier write failed")));
         }
         self.check()?;
-        if let Err(error) = self.store.append(lines.as_bytes()) {
+        let appended = self.file.0.write_all(lines.as_bytes());
+        if let Err(error) = appended.and_then(|()| self.file.0.sync_data()) {
             self.broken = true;
             // If this fails, too, the torn line is cut off when the journal is opened again.
-            let _ = self.store.truncate(self.len);
+            let _ = self.truncate();
             return Err(self.failed(error));
         }
         self.len += lines.len() as u64;
         Ok(())
     }
 
+    /// Truncates the file to its complete lines.
+    fn truncate(&self) -> io::Result<()> {
+        self.file.0.set_len(self.len)?;
+        self.file.0.sync_data()
+    }
+
     fn failed(&self, source: io::Error) -> StudyError {
         StudyError::Io { action: "write", path: self.path.clone(), source }
     }
+}
+
+/// Opens the file, or creates it, and locks it, since the folder's `.lock` may be removed.
+///
+/// # Errors
+/// [`io::ErrorKind::WouldBlock`] if another process has locked it.
+fn open_locked(path: &Path) -> io::Result<Lock> {
+    let file = File::options().read(true).append(true).create(true).open(path)?;
+    // On other systems a lock would block readers.
+    if cfg!(unix) {
+        file.try_lock()?;
+    }
+    Ok(Lock(file))
 }
 
 /// Reads a journal without writing to it; a torn last line is ignored, and a missing file counts as empty.

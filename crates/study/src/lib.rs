@@ -24,7 +24,6 @@ mod rule;
 mod runner;
 mod scheduler;
 mod seal;
-mod store;
 mod table;
 mod work;
 
@@ -45,7 +44,6 @@ pub use provenance::{BENCH_ROLES, Provenance, SOURCES, Segment};
 pub use record::{ByRibs, Recorded, StudyRecord, Timing, Volume, Walked, best, nearest, volume};
 pub use runner::Runner;
 pub use scheduler::{Ending, Next, Proposal, ProposalResult, Scheduler};
-pub use seal::{sha256_hex, strip_times};
-pub use store::Store;
+pub use seal::sha256_hex;
 pub use table::{EVALUATIONS_CSV, evaluations_csv};
 pub use work::{Work, WorkError};

@@ -7,7 +7,7 @@
 //!
 //! `check` is the beginning (16 hexadecimal digits) of the SHA-256 of the bytes before `,"check"`. It is
 //! followed by `datetime_start`, `datetime_complete`, `wall_s` and `cached`, the only fields that differ
-//! between two runs of a study; [`super::strip_times`] (or `sed 's/,"datetime_start".*//'`) removes them.
+//! between two runs of a study; `sed 's/,"datetime_start".*//'` removes them.
 
 use super::error::LineError;
 use super::record::{Recorded, Timing};

@@ -9,8 +9,8 @@ const LOCK_FILE: &str = ".lock";
 /// Owner of a lock whose process ID cannot be read.
 pub(super) const UNKNOWN_OWNER: &str = "of unknown number";
 
-/// Locked file of a folder. The system releases the lock when the process ends.
-pub(super) struct Lock(File);
+/// Locked file. The system releases the lock when the process ends.
+pub(super) struct Lock(pub(super) File);
 
 impl Drop for Lock {
     fn drop(&mut self) {

@@ -108,14 +108,14 @@ pub struct Timing {
 }
 
 impl Timing {
-    /// Calls `measure` and returns its result with start, end and duration.
-    pub fn of<T>(measure: impl FnOnce() -> T) -> (T, Timing) {
+    /// Calls `evaluate` and returns its result with start, end and duration.
+    pub fn of<T>(evaluate: impl FnOnce() -> T) -> (T, Timing) {
         // The format of Optuna.
         let now = || Timestamp::now().strftime("%Y-%m-%dT%H:%M:%S.%6f").to_string();
         let (datetime_start, clock) = (now(), Instant::now());
-        let measured = measure();
+        let result = evaluate();
         let (datetime_complete, wall_s) = (now(), clock.elapsed().as_secs_f64());
-        (measured, Timing { datetime_start, datetime_complete, wall_s, cached: Vec::new() })
+        (result, Timing { datetime_start, datetime_complete, wall_s, cached: Vec::new() })
     }
 }
 

@@ -46,14 +46,14 @@ impl Runner<'_> {
                         if stopped { Next::Wait } else { scheduler.next(study, optimizer)? };
                     match next {
                         Next::Ended(ending) => return Ok(ending),
-                        Next::Measure(proposals) => {
+                        Next::Evaluate(proposals) => {
                             running += proposals.len();
                             for proposal in proposals {
                                 let sender = sender.clone();
                                 scope.spawn(move |_| {
                                     // A panic is sent to the receiving thread, which resumes it.
-                                    let measure = AssertUnwindSafe(|| self.measure(proposal));
-                                    drop(sender.send(catch_unwind(measure)));
+                                    let evaluate = AssertUnwindSafe(|| self.evaluate(proposal));
+                                    drop(sender.send(catch_unwind(evaluate)));
                                 });
                             }
                         }
@@ -88,10 +88,10 @@ impl Runner<'_> {
     }
 
     /// Evaluates a design; returns `None` if the run was cancelled before the evaluation was complete.
-    fn measure(&self, proposal: Proposal) -> Result<Option<ProposalResult>, StudyError> {
-        let measured = (!self.stopped()).then(|| proposal.measure(self.evaluator));
+    fn evaluate(&self, proposal: Proposal) -> Result<Option<ProposalResult>, StudyError> {
+        let result = (!self.stopped()).then(|| proposal.evaluate(self.evaluator));
         // A cancelled evaluation may lack trials.
-        measured.filter(|_| !self.stopped()).transpose()
+        result.filter(|_| !self.stopped()).transpose()
     }
 }
 
@@ -100,10 +100,10 @@ impl Proposal {
     ///
     /// # Errors
     /// If the design cannot be simulated.
-    pub fn measure(&self, evaluator: &dyn Evaluate) -> Result<ProposalResult, StudyError> {
+    pub fn evaluate(&self, evaluator: &dyn Evaluate) -> Result<ProposalResult, StudyError> {
         let Proposal { number, design, race } = self;
-        let (measured, timing) = Timing::of(|| evaluator.evaluate(design, race.as_ref()));
+        let (evaluations, timing) = Timing::of(|| evaluator.evaluate(design, race.as_ref()));
         let error = |source| StudyError::impossible(*number, design, source);
-        Ok(ProposalResult { number: *number, measured: measured.map_err(error)?, timing })
+        Ok(ProposalResult { number: *number, evaluations: evaluations.map_err(error)?, timing })
     }
 }

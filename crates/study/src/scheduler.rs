@@ -79,7 +79,7 @@ pub struct Proposal {
 #[derive(Debug, Clone, PartialEq)]
 pub enum Next {
     /// Evaluate these designs, in any order; each is returned once.
-    Measure(Vec<Proposal>),
+    Evaluate(Vec<Proposal>),
     /// Wait for a result.
     Wait,
     /// Check whether a gain is expected after this number of evaluations, and call
@@ -95,7 +95,7 @@ pub struct ProposalResult {
     /// Number of the proposal.
     pub number: u64,
     /// Evaluations of the design.
-    pub measured: Evaluations,
+    pub evaluations: Evaluations,
     /// Start, end and duration of the evaluation.
     pub timing: Timing,
 }
@@ -112,7 +112,7 @@ pub struct Scheduler {
     /// Number of evaluations passed to `tell`.
     told: usize,
     /// Designs being evaluated, by the number of the proposal.
-    measuring: BTreeMap<u64, Design>,
+    evaluating: BTreeMap<u64, Design>,
     /// Results that are written once all earlier ones have arrived, by index.
     waiting: BTreeMap<u64, Recorded>,
     /// Settings of early stopping (see [`StudyConfig::early_stopping`](super::StudyConfig::early_stopping)).
@@ -147,12 +147,12 @@ impl Scheduler {
         optimizer: &mut dyn Optimizer,
     ) -> Result<Next, StudyError> {
         while self.ended.is_none() {
-            if !study.config.asynchronous && self.measuring.is_empty() {
+            if !study.config.asynchronous && self.evaluating.is_empty() {
                 self.tell_batch(study, optimizer);
             }
             if self.settled {
                 // Running evaluations are written, too.
-                let written = self.measuring.is_empty();
+                let written = self.evaluating.is_empty();
                 return Ok(if written { Next::Ended(Ending::Settled) } else { Next::Wait });
             }
             let least = self.early_stopping.map(|[least, _]| least.max(self.checked + 1));
@@ -161,15 +161,15 @@ impl Scheduler {
             }
             let proposals = match study.config.asynchronous {
                 true => self.next_arrivals(study, optimizer)?,
-                false if self.measuring.is_empty() => self.next_batch(study, optimizer)?,
+                false if self.evaluating.is_empty() => self.next_batch(study, optimizer)?,
                 false => Vec::new(),
             };
             if !proposals.is_empty() {
                 let designs = proposals.iter().map(|p| (p.number, p.design.clone()));
-                self.measuring.extend(designs);
-                return Ok(Next::Measure(proposals));
+                self.evaluating.extend(designs);
+                return Ok(Next::Evaluate(proposals));
             }
-            if !self.measuring.is_empty() {
+            if !self.evaluating.is_empty() {
                 return Ok(Next::Wait);
             }
         }
@@ -197,9 +197,9 @@ impl Scheduler {
         result: ProposalResult,
         progress: &mut dyn FnMut(&Recorded),
     ) -> Result<bool, StudyError> {
-        let ProposalResult { number, measured: Evaluations { stiffness, tasks, cached }, timing } =
-            result;
-        let Some(design) = self.measuring.remove(&number) else { return Ok(false) };
+        let ProposalResult { number, evaluations, timing } = result;
+        let Evaluations { stiffness, tasks, cached } = evaluations;
+        let Some(design) = self.evaluating.remove(&number) else { return Ok(false) };
         let (index, proposal) = match study.config.asynchronous {
             true => (study.evaluations.len() as u64, Some(number)),
             false => (number, None),
@@ -285,8 +285,8 @@ impl Scheduler {
             self.propose(optimizer, 1);
         }
         let mut proposals = self.proposals(study);
-        proposals.retain(|proposal| !self.measuring.contains_key(&proposal.number));
-        if proposals.is_empty() && self.measuring.is_empty() {
+        proposals.retain(|proposal| !self.evaluating.contains_key(&proposal.number));
+        if proposals.is_empty() && self.evaluating.is_empty() {
             let spent = self.told >= Self::limit(study);
             self.ended = Some(if spent { Self::spent(study) } else { exhausted(optimizer) });
         }

@@ -11,13 +11,6 @@ use serde::Serialize;
 
 /// Text before the checksum of a line.
 pub(super) const CHECK_KEY: &str = ",\"check\":\"";
-const TIME_KEY: &str = ",\"datetime_start\":";
-
-/// Removes the fields of a journal that differ between two runs of a study.
-pub fn strip_times(journal: &str) -> String {
-    let content = |line: &str| line.split(TIME_KEY).next().unwrap_or(line).to_owned() + "\n";
-    journal.lines().map(content).collect()
-}
 
 /// Returns `contents` as a line of JSON with its checksum, followed by `times`.
 pub fn seal(

@@ -102,7 +102,7 @@ impl Work {
     /// # Errors
     /// If it cannot be serialized.
     pub fn encode_result(&self, result: ProposalResult) -> Result<Vec<u8>, WorkError> {
-        let tasks = result.measured.tasks;
+        let tasks = result.evaluations.tasks;
         let done = WorkResult { work_sha256: sha256_hex(&self.encode()?), tasks };
         encoded(&done, Some(&result.timing))
     }
@@ -117,7 +117,7 @@ impl Work {
         if work_sha256 != sha256_hex(&self.encode()?) {
             return Err(WorkError("the result belongs to other work".to_owned()));
         }
-        let measured = Evaluations { stiffness, tasks, cached: Vec::new() };
-        Ok(ProposalResult { number: self.proposal.number, measured, timing })
+        let evaluations = Evaluations { stiffness, tasks, cached: Vec::new() };
+        Ok(ProposalResult { number: self.proposal.number, evaluations, timing })
     }
 }

@@ -35,7 +35,7 @@ impl Setting {
     }
 }
 
-/// Task and the settings in which its windows are measured, the reference first.
+/// Task and the settings in which its windows are simulated, the reference first.
 pub struct TaskSettings {
     pub task: Task,
     pub settings: Vec<Setting>,
@@ -63,8 +63,8 @@ impl Subject {
     }
 }
 
-/// Returns the JSON object of a finger on a task, extended by the fields of `measured`.
-fn subject_json(task: &str, design: &Measurement, measured: Value) -> Value {
+/// Returns the JSON object of a finger on a task, extended by the fields of `results`.
+fn subject_json(task: &str, design: &Measurement, results: Value) -> Value {
     let mut fields = json!({
         "task": task,
         "design": design.design,
@@ -73,22 +73,22 @@ fn subject_json(task: &str, design: &Measurement, measured: Value) -> Value {
         "stiffness_assembly_n_per_mm": design.assembly / N_PER_MM,
         "stiffness_compliance_n_per_mm": design.compliance / N_PER_MM,
     });
-    if let (Value::Object(fields), Value::Object(measured)) = (&mut fields, measured) {
-        fields.extend(measured);
+    if let (Value::Object(fields), Value::Object(results)) = (&mut fields, results) {
+        fields.extend(results);
     }
     fields
 }
 
-/// Calls `measure` in parallel for every design on every task. Returns the results ordered by task, then by design.
+/// Calls `simulate` in parallel for every design on every task. Returns the results ordered by task, then by design.
 pub fn each<T: Send>(
     tasks: &[TaskSettings],
     designs: &[Measurement],
-    measure: impl Fn(&Subject, &[Setting]) -> T + Sync,
+    simulate: impl Fn(&Subject, &[Setting]) -> T + Sync,
 ) -> Vec<T> {
     let pairs: Vec<_> =
         tasks.iter().flat_map(|task| designs.iter().map(move |d| (task, d))).collect();
     let one = |(on, design): (&TaskSettings, &Measurement)| {
-        measure(&Subject::new(&on.task.name, &on.task.finger, *design), &on.settings)
+        simulate(&Subject::new(&on.task.name, &on.task.finger, *design), &on.settings)
     };
     pairs.into_par_iter().map(one).collect()
 }

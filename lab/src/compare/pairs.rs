@@ -44,7 +44,7 @@ impl WindowPair {
 }
 
 /// Returns the pairs of windows in the first setting and in each of the others, for every design on every task.
-pub fn measure(tasks: &[TaskSettings], designs: &[Measurement]) -> Vec<WindowPair> {
+pub fn simulate(tasks: &[TaskSettings], designs: &[Measurement]) -> Vec<WindowPair> {
     let pairs = each(tasks, designs, |subject, settings| {
         let Some((first, others)) = settings.split_first() else { return Vec::new() };
         let reference = first.evaluate(&subject.finger);
@@ -112,7 +112,7 @@ pub fn json(
     let row = |pair: &WindowPair| {
         let [below, above] = pair.moved_mm();
         let [first, second] = pair.windows.each_ref().map(window_json);
-        let measured = json!({
+        let results = json!({
             setting: pair.settings[1],
             windows[0]: first,
             windows[1]: second,
@@ -122,7 +122,7 @@ pub fn json(
             "allowed_mm": allowed.map(grid_mm),
             "passed": allowed.map(|allowed| pair.agrees(allowed)),
         });
-        subject_json(&pair.subject.task, &pair.subject.design, measured)
+        subject_json(&pair.subject.task, &pair.subject.design, results)
     };
     pairs.iter().map(row).collect()
 }

@@ -62,7 +62,7 @@ fn every_way_but_the_first_makes_a_pair_and_the_table_fits_a_terminal() {
         setting("strides", Search::Strides),
         setting("again", Search::Walk),
     ];
-    let found = pairs::measure(&[TaskSettings { task, settings }], &representative_designs());
+    let found = pairs::simulate(&[TaskSettings { task, settings }], &representative_designs());
     let names: Vec<&str> = found.iter().map(|pair| pair.settings[1].as_str()).collect();
     assert_eq!(names, ["strides", "again"].repeat(3));
     assert!(found.iter().all(|pair| pair.agrees(0) && pair.trials[0] > 10));

@@ -138,7 +138,7 @@ impl LeverAnalysis<'_> {
     fn window(&self, specimen: &Specimen, stop: &AtomicBool) -> Result<Evaluation, DesignError> {
         let mut specimen = specimen.clone();
         specimen.task.strategy.rule = StartRule::Taught;
-        self.evaluator.measure(&specimen, Search::default(), &Plan::WINDOW, stop)
+        self.evaluator.simulate(&specimen, Search::default(), &Plan::WINDOW, stop)
     }
 }
 

@@ -12,9 +12,9 @@ const SIGMA: f64 = 0.3;
 /// of the mean along that axis.
 const MIN_STD_STEPS: f64 = 0.3;
 /// Generations without a new point after which the run is restarted.
-const BARREN_GENERATIONS: u32 = 8;
+const STALLED_GENERATIONS: u32 = 8;
 /// Restarts without a new point after which a point not yet proposed is drawn instead.
-const BARREN_RESTARTS: u32 = 3;
+const STALLED_RESTARTS: u32 = 3;
 /// Largest number of draws for a point of the batch beyond a full generation.
 const EXTRA_DRAWS: u32 = 50;
 
@@ -37,9 +37,9 @@ pub(crate) struct CmaEsOptimizer {
     /// Candidates and the grid points they snap to.
     generation: Vec<(Vec<f64>, GridPoint)>,
     /// Whether the current generation proposed a new point.
-    fruitful: bool,
-    barren_generations: u32,
-    barren_restarts: u32,
+    has_new_point: bool,
+    stalled_generations: u32,
+    stalled_restarts: u32,
 }
 
 impl CmaEsOptimizer {
@@ -59,16 +59,16 @@ impl CmaEsOptimizer {
             restarts: Restarts::new(start, seed),
             costs: Costs::new(grid, seed),
             generation: Vec::new(),
-            fruitful: false,
-            barren_generations: 0,
-            barren_restarts: 0,
+            has_new_point: false,
+            stalled_generations: 0,
+            stalled_restarts: 0,
         }
     }
 
     /// Returns the next unseen candidate, or `None` after too many draws or barren restarts.
     fn next(&mut self) -> Option<GridPoint> {
         let mut extra = 0;
-        while self.barren_restarts < BARREN_RESTARTS && extra < EXTRA_DRAWS {
+        while self.stalled_restarts < STALLED_RESTARTS && extra < EXTRA_DRAWS {
             let full = self.generation.len() >= self.restarts.current.lambda;
             if full
                 && self.generation.iter().all(|(_, point)| self.costs.by_point.contains_key(point))
@@ -84,7 +84,7 @@ impl CmaEsOptimizer {
                 self.generation.push((x, point.clone()));
             }
             if new {
-                self.fruitful = true;
+                self.has_new_point = true;
                 return Some(point);
             }
             extra += u32::from(full);
@@ -97,15 +97,15 @@ impl CmaEsOptimizer {
         let told: Vec<Solution> =
             std::mem::take(&mut self.generation).into_iter().map(solution).collect();
         self.restarts.tell(&told);
-        if std::mem::take(&mut self.fruitful) {
-            self.barren_generations = 0;
-            self.barren_restarts = 0;
+        if std::mem::take(&mut self.has_new_point) {
+            self.stalled_generations = 0;
+            self.stalled_restarts = 0;
             return;
         }
-        self.barren_generations += 1;
-        if self.barren_generations >= BARREN_GENERATIONS {
-            self.barren_generations = 0;
-            self.barren_restarts += 1;
+        self.stalled_generations += 1;
+        if self.stalled_generations >= STALLED_GENERATIONS {
+            self.stalled_generations = 0;
+            self.stalled_restarts += 1;
             self.restarts.restart();
         }
     }
@@ -117,7 +117,7 @@ impl Optimizer for CmaEsOptimizer {
         while points.len() < n && !self.costs.proposed.exhausted() {
             let found = if self.restarts.current.mean.is_empty() { None } else { self.next() };
             let Some(point) = found.or_else(|| self.costs.proposed.next_unseen()) else { break };
-            self.barren_restarts = 0;
+            self.stalled_restarts = 0;
             points.push(point);
         }
         points

@@ -53,7 +53,7 @@ impl Standardised {
     /// them unchanged if no transformation is found.
     pub fn warped(self) -> Self {
         let sample: Vec<f64> =
-            spread(self.values.len(), MAX_WARP_SAMPLE).map(|i| self.values[i]).collect();
+            evenly_spaced(self.values.len(), MAX_WARP_SAMPLE).map(|i| self.values[i]).collect();
         let Some((values, warp)) = warp(&self.values, &sample) else { return self };
         let noise_floor = (self.noise_floor * warp.slope * warp.slope).clamp(1e-8, 1.0);
         Standardised { values, noise_floor, zero: f64::NAN, warp: Some(warp), ..self }
@@ -68,7 +68,7 @@ impl Standardised {
 }
 
 /// Returns `count` evenly spaced indices below `n`, or all if `count` is larger.
-pub(super) fn spread(n: usize, count: usize) -> impl Iterator<Item = usize> {
+pub(super) fn evenly_spaced(n: usize, count: usize) -> impl Iterator<Item = usize> {
     let count = count.min(n);
     (0..count).map(move |k| k * n / count)
 }
@@ -111,7 +111,7 @@ mod tests {
 
     #[test]
     fn indices_are_evenly_spaced_and_distinct() {
-        assert_eq!(spread(10, 3).collect::<Vec<_>>(), [0, 3, 6]);
-        assert_eq!(spread(3, 10).collect::<Vec<_>>(), [0, 1, 2]);
+        assert_eq!(evenly_spaced(10, 3).collect::<Vec<_>>(), [0, 3, 6]);
+        assert_eq!(evenly_spaced(3, 10).collect::<Vec<_>>(), [0, 1, 2]);
     }
 }

@@ -1,7 +1,7 @@
 //! Search for the largest acquisition with local models.
 
 use super::lbfgs::Limits;
-use super::neighbours::{APPROXIMATE_NEIGHBOURS, Neighbours};
+use super::local_models::{APPROXIMATE_NEIGHBOURS, LocalModels};
 use super::search::{Acquisitions, Search, SearchRegion};
 use crate::GridPoint;
 
@@ -20,7 +20,7 @@ const MAX_STEPS: usize = 24;
 
 /// Returns the grid point not yet proposed with the largest acquisition found, computed for each point from the models
 /// near it; `None` if there is no such point with a finite acquisition.
-pub(super) fn maximise(known: &Neighbours, region: SearchRegion) -> Option<GridPoint> {
+pub(super) fn maximise(known: &LocalModels, region: SearchRegion) -> Option<GridPoint> {
     let candidates = match region.grid().size() {
         ..=WHOLE_GRID => region.grid().points().collect(),
         _ => region.candidates(CANDIDATES),
@@ -40,7 +40,7 @@ pub(super) fn maximise(known: &Neighbours, region: SearchRegion) -> Option<GridP
 
 /// Improves a start by L-BFGS within the trust region of the models near it, then by steps of one level with the
 /// models near the result.
-fn climb(known: &Neighbours, region: SearchRegion, start: &GridPoint) -> Option<(GridPoint, f64)> {
+fn climb(known: &LocalModels, region: SearchRegion, start: &GridPoint) -> Option<(GridPoint, f64)> {
     let x = region.grid().free_unit(start);
     let half_widths = known.trust_region(&x, NEIGHBOURS);
     let side = |by: f64| x.iter().zip(&half_widths).map(move |(x, r)| (x + by * r).clamp(0.0, 1.0));

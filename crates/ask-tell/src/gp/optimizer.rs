@@ -2,7 +2,7 @@
 
 use super::search::SearchRegion;
 use super::training::{Model, Training};
-use crate::proposed::Proposed;
+use crate::proposed::ProposedPoints;
 use crate::sobol::SobolSequence;
 use crate::{Grid, GridPoint, Observation, Optimizer, StopReason};
 
@@ -28,7 +28,7 @@ const MAX_GLOBAL_POINTS: usize = 250;
 /// - *Fallback* where the model gives no suggestion: the Sobol sequence, then random points.
 #[derive(Debug, Clone)]
 pub(crate) struct GpOptimizer {
-    proposed: Proposed,
+    proposed: ProposedPoints,
     training: Training,
     /// Points of the initial design.
     design: SobolSequence,
@@ -46,7 +46,7 @@ impl GpOptimizer {
     pub fn new(grid: Grid, seed: u64, noise_floors: &[f64]) -> Self {
         GpOptimizer {
             design: SobolSequence::new(grid.dimension(), seed, 0, "gp design"),
-            proposed: Proposed::new(grid, seed),
+            proposed: ProposedPoints::new(grid, seed),
             training: Training::new(noise_floors),
             told: Vec::new(),
             pending: Vec::new(),

@@ -3,7 +3,7 @@
 use super::lbfgs::{Limits, minimise};
 use super::trained::TrainedModels;
 use crate::normal::StandardNormal;
-use crate::proposed::Proposed;
+use crate::proposed::ProposedPoints;
 use crate::sobol::SobolSequence;
 use crate::stream::stream;
 use crate::{Grid, GridPoint};
@@ -24,7 +24,7 @@ const MAX_GRADIENTS: usize = 40;
 /// Search region: the points not yet proposed.
 #[derive(Clone, Copy)]
 pub(super) struct SearchRegion<'a> {
-    pub proposed: &'a Proposed,
+    pub proposed: &'a ProposedPoints,
     /// Good points to start from, best first.
     pub incumbents: &'a [GridPoint],
 }
@@ -191,7 +191,7 @@ mod tests {
         let theta =
             Hyperparameters { log_length: vec![-1.2, -1.0], log_signal: 0.0, log_noise: -12.0 };
         let gp = Gp::new(&x, &y, 1e-6, &theta).unwrap();
-        let mut proposed = Proposed::new(Grid::new(vec![31, 1, 29]), 0);
+        let mut proposed = ProposedPoints::new(Grid::new(vec![31, 1, 29]), 0);
         for k in 0..15 {
             proposed.insert(&GridPoint(vec![2 * k, 0, k]));
         }

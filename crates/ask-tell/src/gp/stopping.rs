@@ -6,13 +6,13 @@
 //! negative. A search is settled when no point, evaluated or not, is likely to beat the best
 //! confirmed one by more than the least difference that matters.
 
-use super::data::{Standardised, spread, standardise};
+use super::data::{Standardised, evenly_spaced, standardise};
 use super::fit::{FitEffort, fit};
 use super::model::Gp;
 use super::optimizer::DEFAULT_NOISE_FLOOR;
 use super::search::SearchRegion;
 use crate::process::{Process, distance2, matern52};
-use crate::proposed::Proposed;
+use crate::proposed::ProposedPoints;
 use crate::statistics::{normal_log_cdf, normal_pdf};
 use crate::{Grid, GridPoint, Observation};
 use libm::{exp, sqrt};
@@ -107,7 +107,7 @@ impl<'a> StoppingCriterion<'a> {
         let data = standardise(&values, DEFAULT_NOISE_FLOOR)?.warped();
         let x: Vec<Vec<f64>> =
             self.observations.iter().map(|o| self.grid.free_unit(&o.point)).collect();
-        let fitted = spread(x.len(), MAX_FITTED).map(|i| (x[i].clone(), data.values[i]));
+        let fitted = evenly_spaced(x.len(), MAX_FITTED).map(|i| (x[i].clone(), data.values[i]));
         let (points, values): (Vec<Vec<f64>>, Vec<f64>) = fitted.unzip();
         let effort = FitEffort::for_observations(values.len());
         let theta = fit(&points, &values, data.noise_floor, None, (effort, &|| false));
@@ -227,7 +227,7 @@ impl<'a> StoppingCriterion<'a> {
     fn search_may_improve(&self, best: f64) -> bool {
         let Some(model) = self.search_model() else { return true };
         let threshold = best + self.least_gain;
-        let mut proposed = Proposed::new(self.grid.clone(), 0);
+        let mut proposed = ProposedPoints::new(self.grid.clone(), 0);
         for observation in self.observations {
             proposed.insert(&observation.point);
         }
@@ -258,7 +258,7 @@ impl<'a> StoppingCriterion<'a> {
         NODES.into_iter().map(at).sum::<f64>() >= MIN_PROBABILITY
     }
 
-    fn candidates(&self, proposed: &Proposed) -> Vec<GridPoint> {
+    fn candidates(&self, proposed: &ProposedPoints) -> Vec<GridPoint> {
         let mut best: Vec<&Observation> =
             self.observations.iter().filter(|o| o.value().is_some()).collect();
         best.sort_by(|a, b| b.values[0].total_cmp(&a.values[0]));

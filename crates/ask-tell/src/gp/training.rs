@@ -1,10 +1,10 @@
 //! Fitting of the models to the observations.
 
-use super::data::{Standardised, spread, standardise};
+use super::data::{Standardised, evenly_spaced, standardise};
 use super::fit::{FitEffort, fit};
 use super::hyperparameters::Hyperparameters;
+use super::local_models::{APPROXIMATE_NEIGHBOURS, LocalModels};
 use super::local_search;
-use super::neighbours::{APPROXIMATE_NEIGHBOURS, Neighbours};
 use super::search::{Search, SearchRegion};
 use super::trained::{Front, Goal, TrainedModels};
 use crate::pareto::front;
@@ -29,7 +29,7 @@ pub(super) enum Model {
     /// Processes conditioned on all points.
     Global(TrainedModels),
     /// Processes conditioned on the points nearest to a location, wherever one is needed.
-    Local(Neighbours),
+    Local(LocalModels),
 }
 
 impl Model {
@@ -89,7 +89,7 @@ impl Training {
             self.thetas = self.fit_all(&x, &data, &subset, effort);
             self.last_count = n;
         }
-        let mut known = Neighbours::new(x, data, self.thetas.clone(), zeros);
+        let mut known = LocalModels::new(x, data, self.thetas.clone(), zeros);
         if whole {
             let mut trained = known.models_of(&(0..n).collect())?;
             let (x, objectives) = (&known.x, &trained.models[..trained.objectives()]);
@@ -168,7 +168,7 @@ impl Training {
 fn fitted_subset(values: &[f64]) -> BTreeSet<usize> {
     let n = values.len();
     let leaders = best_first(|i| values[i], 0..n).into_iter().take(MAX_FITTED / 2);
-    spread(n, MAX_FITTED / 2).chain(leaders.map(|(_, i)| i)).collect()
+    evenly_spaced(n, MAX_FITTED / 2).chain(leaders.map(|(_, i)| i)).collect()
 }
 
 /// Returns indices with their values, the largest value first.

@@ -153,7 +153,7 @@ fn duplicate(new: &Experiment, before: &[Experiment]) -> Option<String> {
 /// Largest length, mm; a larger one is taken for micrometres.
 pub const LARGEST_LENGTH_MM: f64 = 100.0;
 /// Smallest length other than 0, mm, below the resolution of the starts; a smaller one is taken for metres.
-const LEAST_MM: f64 = 0.02;
+const MIN_LENGTH_MM: f64 = 0.02;
 /// Largest force, N; a larger one is taken for millinewtons.
 pub const LARGEST_FORCE_N: f64 = 5000.0;
 
@@ -193,7 +193,7 @@ pub(crate) fn length(text: &str) -> Result<f64, String> {
         long if long.abs() > LARGEST_LENGTH_MM => {
             Err(format!("{long} looks like micrometres; give millimetres, as in {}", long / 1e3))
         }
-        short if short != 0.0 && short.abs() < LEAST_MM => {
+        short if short != 0.0 && short.abs() < MIN_LENGTH_MM => {
             Err(format!("{short} looks like metres; give millimetres, as in {}", short * 1e3))
         }
         length => Ok(length),

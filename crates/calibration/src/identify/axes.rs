@@ -10,16 +10,16 @@ use insertion::task::{Stage, Task};
 use nalgebra::{Vector2, Vector3};
 
 /// Smallest mean change of the positions by a correction, m; a smaller one cannot be told from errors of the motion.
-const AGREES: f64 = 0.5 * MM;
+const MIN_CHANGE: f64 = 0.5 * MM;
 /// Smallest reduction of the mean distance by a correction, as a fraction of the mean change of the positions.
-const CORRECTS: f64 = 0.5;
+const MIN_REDUCTION: f64 = 0.5;
 /// Smallest length of a recorded path that is compared with the task's path, as a fraction of the task's.
-const COMPLETE: f64 = 0.7;
+const MIN_LENGTH: f64 = 0.7;
 /// Smallest rise that counts as the end of an attempt, as a fraction of the descent to the touch; smallest descent, m,
 /// for which this is checked.
-const RISES: (f64, f64) = (0.5, 1.0 * MM);
+const MIN_RISE: (f64, f64) = (0.5, 1.0 * MM);
 /// Smallest increase of [`explained`] by a correction.
-const EXPLAINS: f64 = 0.5;
+const MIN_GAIN: f64 = 0.5;
 
 /// Correction of a position or force, with the columns in the right order and sign.
 type Correction = fn(Vector3<f64>) -> Vector3<f64>;
@@ -31,14 +31,14 @@ const MIRRORED_X_AND_Y: Correction = |v| Vector3::new(-v.x, -v.y, v.z);
 type Mistake = (&'static str, Correction);
 
 /// Mistakes in the horizontal axes, x and y.
-const OVER_TABLE: [Mistake; 4] = [
+const HORIZONTAL_MISTAKES: [Mistake; 4] = [
     ("x looks mirrored", MIRRORED_X),
     ("y looks mirrored", MIRRORED_Y),
     ("x and y look mirrored", MIRRORED_X_AND_Y),
     ("x and y look swapped", |v| v.yxz()),
 ];
 /// Mistakes that involve the vertical axis, z.
-const IN_HEIGHT: [Mistake; 3] = [
+const VERTICAL_MISTAKES: [Mistake; 3] = [
     ("z looks mirrored", |v| Vector3::new(v.x, v.y, -v.z)),
     ("x and z look swapped", |v| v.zyx()),
     ("y and z look swapped", |v| v.xzy()),
@@ -69,7 +69,7 @@ impl Comparison {
         let tried = mistakes.into_iter().map(|(cause, corrected)| {
             let left = mean(&|(is, expected, _)| corrected(*is) - expected);
             let change = mean(&|(is, ..)| corrected(*is) - is);
-            (left, cause, distance - left > CORRECTS * change && change > AGREES)
+            (left, cause, distance - left > MIN_REDUCTION * change && change > MIN_CHANGE)
         });
         let best = tried.min_by(|a, b| a.0.total_cmp(&b.0));
         Comparison {
@@ -82,7 +82,7 @@ impl Comparison {
 
 /// Returns the likely cause of a first position that is far from the task's start.
 pub(super) fn cause(first: Vector3<f64>, start: Vector3<f64>) -> &'static str {
-    let all = OVER_TABLE.into_iter().chain(IN_HEIGHT);
+    let all = HORIZONTAL_MISTAKES.into_iter().chain(VERTICAL_MISTAKES);
     Comparison::new(all, &[(first, start, 1.0)]).mistake.unwrap_or("check frame and units")
 }
 
@@ -104,7 +104,7 @@ fn commanded(remarks: &mut Remarks<'_>) {
     let Some((goal, first)) = pair(&samples[0]) else { return };
     let moves: Vec<Pair> =
         samples.iter().filter_map(pair).map(|(to, at)| (to - goal, at - first, 1.0)).collect();
-    let all = OVER_TABLE.into_iter().chain(IN_HEIGHT).chain([METRES]);
+    let all = HORIZONTAL_MISTAKES.into_iter().chain(VERTICAL_MISTAKES).chain([METRES]);
     let found = Comparison::new(all, &moves);
     if let Some(cause) = found.mistake {
         let text = format!(
@@ -155,14 +155,14 @@ fn search(remarks: &mut Remarks<'_>, task: &Task) {
     let first = at(&samples[0]);
     let done = planar_path(samples.iter().map(|sample| at(sample) - first));
     let length = |path: &PlanarPath| path.last().map_or(0.0, |(length, _)| *length);
-    let compared =
-        planned.iter().filter(|plan| length(&done) > COMPLETE * length(plan)).map(|plan| {
-            let pairs = done.windows(2).map(|pair| {
-                let [(before, _), (length, at)] = [pair[0], pair[1]];
-                (at.push(0.0), position_at(plan, length).push(0.0), length - before)
-            });
-            Comparison::new(OVER_TABLE, &pairs.collect::<Vec<_>>())
+    let long = planned.iter().filter(|plan| length(&done) > MIN_LENGTH * length(plan));
+    let compared = long.map(|plan| {
+        let pairs = done.windows(2).map(|pair| {
+            let [(before, _), (length, at)] = [pair[0], pair[1]];
+            (at.push(0.0), position_at(plan, length).push(0.0), length - before)
         });
+        Comparison::new(HORIZONTAL_MISTAKES, &pairs.collect::<Vec<_>>())
+    });
     let nearest = compared.min_by(|a, b| a.corrected.total_cmp(&b.corrected));
     if let Some(Comparison { distance, mistake: Some(cause), .. }) = nearest {
         let off = distance / MM;
@@ -175,9 +175,9 @@ fn search(remarks: &mut Remarks<'_>, task: &Task) {
 fn second_attempt(remarks: &mut Remarks<'_>, touched: usize) {
     let samples = &remarks.log.samples;
     let [first, touch] = [0, touched].map(|at| samples[at].tcp.position.z);
-    let high = touch + RISES.0 * (first - touch);
+    let high = touch + MIN_RISE.0 * (first - touch);
     let up = samples[touched..].iter().position(|sample| sample.tcp.position.z > high);
-    let Some(up) = up.map(|at| at + touched).filter(|_| first - touch > RISES.1) else { return };
+    let Some(up) = up.map(|at| at + touched).filter(|_| first - touch > MIN_RISE.1) else { return };
     if let Some(down) = samples[up..].iter().position(|sample| sample.tcp.position.z <= touch) {
         let text = "the tool rises and descends to the socket again: this log contains two attempts; split it \
                     into one log for each";
@@ -186,7 +186,7 @@ fn second_attempt(remarks: &mut Remarks<'_>, touched: usize) {
 }
 
 /// Mistakes in the force, or in the positions relative to it.
-const IN_FORCE: [Mistake; 5] = [
+const FORCE_MISTAKES: [Mistake; 5] = [
     ("along x; x_mm or fx_n looks mirrored", MIRRORED_X),
     ("along y; y_mm or fy_n looks mirrored", MIRRORED_Y),
     ("along x and y; positions look mirrored against the force", MIRRORED_X_AND_Y),
@@ -203,11 +203,11 @@ pub(super) fn springs(file: &str, attempts: &[Curves]) -> Option<Remark> {
         };
         explained(&attempts.iter().map(with).collect::<Vec<_>>())
     };
-    let tried = IN_FORCE.map(|(cause, corrected)| (score(corrected), cause));
+    let tried = FORCE_MISTAKES.map(|(cause, corrected)| (score(corrected), cause));
     let (best, cause) = tried.into_iter().max_by(|a, b| a.0.total_cmp(&b.0))?;
     let text = format!("the robot does not give way in the direction of the force {cause}");
     let remark = Remark { file: file.to_owned(), lines: None, text, serious: true };
-    (best - explained(attempts) > EXPLAINS).then_some(remark)
+    (best - explained(attempts) > MIN_GAIN).then_some(remark)
 }
 
 /// Returns a remark if the friction of a probe is negative: the force along y then drives the slides.

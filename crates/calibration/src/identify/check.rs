@@ -13,28 +13,28 @@ use nalgebra::Vector3;
 use std::ops::Range;
 
 /// Lowest sampling rate, Hz: six samples in a search stroke of 60 ms.
-const SLOWEST_HZ: f64 = 100.0;
+const MIN_RATE_HZ: f64 = 100.0;
 /// Smallest time between two samples that counts as a gap in the log, in medians of that time.
-const STEP: f64 = 5.0;
+const GAP_FACTOR: f64 = 5.0;
 /// Saturation of the sensor: smallest number of consecutive samples at the largest or smallest force of the log, and
 /// smallest deviation of that force from the bias, N.
 const SATURATED: (usize, f64) = (10, 10.0);
 /// Bias of the force, N, and its drift, N/s, above which a remark is made.
-const DRIFT: (f64, f64) = (5.0, 7.0);
+const MAX_DRIFT: (f64, f64) = (5.0, 7.0);
 /// Largest distance of the first position from the task's start, m.
-const ASTRAY: f64 = 30.0 * MM;
+const MAX_START_DISTANCE: f64 = 30.0 * MM;
 /// Largest difference of the tilt from the task's, rad.
-const TILTED: f64 = 2.0 * DEG;
+const MAX_TILT_DIFFERENCE: f64 = 2.0 * DEG;
 /// Largest motion of a pose that counts as a standstill, and smallest motion of its target in the meantime for a
 /// remark, m.
-const STILL: (f64, f64) = (1e-6, 1e-3);
+const STANDSTILL: (f64, f64) = (1e-6, 1e-3);
 /// Interval after a touch over which its force is averaged, s: a soft robot oscillates at first.
 const TOUCH_S: [f64; 2] = [0.02, 0.5];
 /// Smallest force of a contact, N.
-const LEAST_N: f64 = 1.0;
+const MIN_CONTACT_N: f64 = 1.0;
 /// Ratio of measured to simulated forces beyond which the unit is taken to be wrong: fingers and their friction vary
 /// by less.
-const SCALED: f64 = 3.0;
+const MAX_RATIO: f64 = 3.0;
 
 /// Remark on a log.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
@@ -64,7 +64,7 @@ impl std::fmt::Display for Remark {
 /// Remarks on one log.
 pub(super) struct Remarks<'a> {
     pub(super) log: &'a Log,
-    found: Vec<Remark>,
+    all: Vec<Remark>,
 }
 
 impl Remarks<'_> {
@@ -72,7 +72,7 @@ impl Remarks<'_> {
     pub(super) fn add(&mut self, serious: bool, span: Option<[usize; 2]>, text: impl Into<String>) {
         let last = self.log.samples.len() - 1;
         let lines = span.map(|ends| ends.map(|at| self.log.samples[at.min(last)].line));
-        self.found.push(Remark { file: self.log.file.clone(), lines, text: text.into(), serious });
+        self.all.push(Remark { file: self.log.file.clone(), lines, text: text.into(), serious });
     }
 }
 
@@ -85,7 +85,7 @@ pub(super) fn remarks(file: &str, runs: &[Run], task: &Task) -> Vec<Remark> {
 
 /// Returns the remarks on one log; `rotated` if the forces of all logs are in a rotated frame.
 fn of_log(run: &Run, task: &Task, rotated: bool) -> Vec<Remark> {
-    let mut remarks = Remarks { log: &run.log, found: Vec::new() };
+    let mut remarks = Remarks { log: &run.log, all: Vec::new() };
     clock(&mut remarks);
     pose(&mut remarks, run, task);
     let touched = contact(&mut remarks).filter(|_| !rotated);
@@ -94,7 +94,7 @@ fn of_log(run: &Run, task: &Task, rotated: bool) -> Vec<Remark> {
     if let Some(touched) = touched {
         phases(&mut remarks, run, task, touched);
     }
-    remarks.found
+    remarks.all
 }
 
 /// Returns a remark if the forces are in another unit than newtons: if `ratio`, of measured to simulated forces along
@@ -106,7 +106,8 @@ pub(super) fn force_scale(file: &str, ratio: f64) -> Option<Remark> {
         "the forces look too {size}, {factor:.1} times {times} than the simulated force of the finger along \
          the measured path: check their unit (1 kgf is 9.8 N, 1 lbf is 4.4 N), or the scale of the sensor"
     );
-    (factor > SCALED).then(|| Remark { file: file.to_owned(), lines: None, text, serious: true })
+    let remark = Remark { file: file.to_owned(), lines: None, text, serious: true };
+    (factor > MAX_RATIO).then_some(remark)
 }
 
 /// Checks the sampling rate, and that the log has no gaps.
@@ -116,14 +117,14 @@ fn clock(remarks: &mut Remarks<'_>) {
     let gaps = 0..log.samples.len() - 1;
     let Some(worst) = gaps.clone().max_by(|a, b| gap(a).total_cmp(&gap(b))) else { return };
     let (rate, largest) = (1.0 / median, 1e3 * gap(&worst));
-    if rate < SLOWEST_HZ {
+    if rate < MIN_RATE_HZ {
         let text = format!(
             "it is recorded at {rate:.0} Hz (median; the worst gap is {largest:.0} ms), too slow for \
              the strokes of a search: record at 125 to 500 Hz"
         );
         remarks.add(true, None, text);
     }
-    let steps = gaps.filter(|i| gap(i) > STEP * median).count();
+    let steps = gaps.filter(|i| gap(i) > GAP_FACTOR * median).count();
     if steps > 0 {
         let text = format!(
             "the clock steps by {largest:.0} ms where {:.1} ms are usual (gaps of this kind: {steps}): \
@@ -140,7 +141,7 @@ fn pose(remarks: &mut Remarks<'_>, run: &Run, task: &Task) {
     let start = Vector3::from(task.strategy.start) + Vector3::y() * run.offset;
     let far = (first.tcp.position - start).norm();
     let probe = run.outcome.is_none();
-    if far > ASTRAY {
+    if far > MAX_START_DISTANCE {
         let text = format!(
             "it begins at ({}) mm, {:.0} mm from the start of the task and offset, ({}) mm: {}",
             formatted(first.tcp.position / MM, 1),
@@ -151,8 +152,8 @@ fn pose(remarks: &mut Remarks<'_>, run: &Run, task: &Task) {
         remarks.add(!probe, Some([0, 0]), text);
     }
     let (tilt, wanted) = (first.tcp.tilt, task.strategy.tilt);
-    if !probe && (tilt - wanted).abs() > TILTED {
-        let hint = if (tilt + wanted).abs() < TILTED {
+    if !probe && (tilt - wanted).abs() > MAX_TILT_DIFFERENCE {
+        let hint = if (tilt + wanted).abs() < MAX_TILT_DIFFERENCE {
             "its sign, or the direction of x, is inverted"
         } else if (tilt / DEG - wanted).abs() < 0.1 * wanted.abs() {
             "it looks like radians"
@@ -181,11 +182,11 @@ fn pose(remarks: &mut Remarks<'_>, run: &Run, task: &Task) {
 fn standstill(samples: &[LogSample]) -> Option<[usize; 2]> {
     let mut from = 0;
     for (at, now) in samples.iter().enumerate() {
-        if (now.tcp.position - samples[from].tcp.position).amax() > STILL.0 {
+        if (now.tcp.position - samples[from].tcp.position).amax() > STANDSTILL.0 {
             from = at;
         }
         let (old, new) = (samples[from].target?, now.target?);
-        if (new.position - old.position).norm() > STILL.1 {
+        if (new.position - old.position).norm() > STANDSTILL.1 {
             return Some([from, at]);
         }
     }
@@ -198,7 +199,7 @@ fn touch_force(log: &Log) -> Option<([usize; 2], Vector3<f64>)> {
     let to = after(log, from, TOUCH_S[1]);
     let contact = &log.samples[after(log, from, TOUCH_S[0]).min(to - 1)..to];
     let force = mean(contact) - AirForce::of(air(log, Some(from))).bias;
-    (force.norm() > LEAST_N).then_some(([from, to], force))
+    (force.norm() > MIN_CONTACT_N).then_some(([from, to], force))
 }
 
 /// Returns a remark if in most logs the largest component of the force at the touch is along x, or along y, instead of
@@ -244,7 +245,7 @@ fn sensor(remarks: &mut Remarks<'_>, touched: Option<usize>) {
     let quiet = air(log, touched);
     let bias = mean(quiet);
     let span = touched.map(|_| [0, quiet.len() - 1]);
-    if touched.is_some() && bias.norm() > DRIFT.0 {
+    if touched.is_some() && bias.norm() > MAX_DRIFT.0 {
         let text = format!(
             "the force in the air is ({}) N instead of zero; it is subtracted: zero the sensor before \
              an attempt, or give the tool's weight",
@@ -253,7 +254,7 @@ fn sensor(remarks: &mut Remarks<'_>, touched: Option<usize>) {
         remarks.add(false, span, text);
     }
     let (slope, error) = slope(quiet);
-    if touched.is_some() && slope.norm() > DRIFT.1.max(4.0 * error.norm()) {
+    if touched.is_some() && slope.norm() > MAX_DRIFT.1.max(4.0 * error.norm()) {
         let text = format!(
             "the force in the air changes by ({}) N/s: the sensor drifts, or the tool accelerates",
             formatted(slope, 1)

@@ -102,13 +102,13 @@ impl Curves {
 
 /// Interpolates linearly between two samples.
 fn between(a: &LogSample, b: &LogSample, time: f64) -> LogSample {
-    let share = ((time - a.time_s) / (b.time_s - a.time_s)).clamp(0.0, 1.0);
+    let part = ((time - a.time_s) / (b.time_s - a.time_s)).clamp(0.0, 1.0);
     LogSample {
         line: a.line,
         time_s: time,
-        tcp: a.tcp.towards(&b.tcp, share),
-        target: a.target.zip(b.target).map(|(a, b)| a.towards(&b, share)),
-        force: a.force + share * (b.force - a.force),
+        tcp: a.tcp.towards(&b.tcp, part),
+        target: a.target.zip(b.target).map(|(a, b)| a.towards(&b, part)),
+        force: a.force + part * (b.force - a.force),
     }
 }
 

@@ -8,11 +8,11 @@ use serde::Serialize;
 use std::ops::Range;
 
 /// Number of points on either side over which curves are averaged before differentiation: 10 ms.
-const REACH: usize = 5;
+const HALF_WIDTH: usize = 5;
 /// Largest delay of the force behind the pose, points: 30 ms.
-const DELAYS: usize = 15;
+const MAX_DELAY: usize = 15;
 /// Smallest relative standard deviation of a stiffness: a robot is not an ideal spring.
-const FLOOR: f64 = 0.04;
+const MIN_RELATIVE_SD: f64 = 0.04;
 
 /// One axis of a compliant flange: F = -k e - c e' + m a, with the force F on the tool, the lag e of the TCP behind its
 /// target, the acceleration a of the TCP, and the moving mass m without the tool below the sensor.
@@ -35,7 +35,7 @@ pub struct Flange {
 /// is not significant.
 pub fn flange(all: &[Curves], axis: usize) -> Option<Flange> {
     let all: Vec<Curves> = all.iter().map(Curves::in_tool).collect();
-    let fits = (0..=DELAYS).filter_map(|delay| {
+    let fits = (0..=MAX_DELAY).filter_map(|delay| {
         let sums: Vec<Sums> = all.iter().filter_map(|one| Sums::of(one, axis, delay)).collect();
         let fit = solve(sums.iter())?;
         Some((delay, sums, fit))
@@ -51,7 +51,7 @@ pub fn flange(all: &[Curves], axis: usize) -> Option<Flange> {
     let [stiffness, damping, mass] = fit.terms;
     let known = stiffness > 0.0 && jackknife < stiffness;
     known.then_some(Flange {
-        stiffness: Estimate { mean: stiffness, sd: jackknife.max(FLOOR * stiffness) },
+        stiffness: Estimate { mean: stiffness, sd: jackknife.max(MIN_RELATIVE_SD * stiffness) },
         damping,
         mass,
         delay_s: delay as f64 * STEP_S,
@@ -98,10 +98,10 @@ struct Fit {
 
 impl Sums {
     fn of(one: &Curves, axis: usize, delay: usize) -> Option<Self> {
-        let count = one.tcp.len().checked_sub(delay).filter(|&count| count > 4 * REACH)?;
-        let target = smoothed(&smoothed(one.target.as_ref()?, REACH), REACH);
-        let tcp = smoothed(&smoothed(&one.tcp, REACH), REACH);
-        let force = smoothed(&smoothed(&one.force, REACH), REACH);
+        let count = one.tcp.len().checked_sub(delay).filter(|&count| count > 4 * HALF_WIDTH)?;
+        let target = smoothed(&smoothed(one.target.as_ref()?, HALF_WIDTH), HALF_WIDTH);
+        let tcp = smoothed(&smoothed(&one.tcp, HALF_WIDTH), HALF_WIDTH);
+        let force = smoothed(&smoothed(&one.force, HALF_WIDTH), HALF_WIDTH);
         let behind: Vec<Vector3<f64>> = target.iter().zip(&tcp).map(|(to, at)| to - at).collect();
         let (rate, acceleration) = (rates(&behind), accelerations(&tcp));
         let column = |values: &[Vector3<f64>], from: usize, sign: f64| {
@@ -179,28 +179,28 @@ pub struct Friction {
 }
 
 /// Height above the face above which the part is in the air, m.
-const LIFTED: f64 = 1e-3;
+const MIN_AIR_HEIGHT: f64 = 1e-3;
 /// Fraction of the largest speed along y above which the part slides.
-const MOVING: f64 = 0.4;
+const MIN_SPEED: f64 = 0.4;
 /// Shortest slide, s.
-const SLIDE_S: f64 = 0.3;
+const MIN_SLIDE_S: f64 = 0.3;
 /// Normal force below which there is no contact, N.
-const CONTACT_N: f64 = 1.5;
+const MIN_NORMAL_N: f64 = 1.5;
 /// Relative increase of the force ratio over the second half of a slide above which it has not settled.
-const RISING: f64 = 0.12;
+const MAX_RISE: f64 = 0.12;
 /// Smallest relative standard deviation of a coefficient: contacts deviate from Coulomb's law.
-const FRICTION_FLOOR: f64 = 0.04;
+const MIN_FRICTION_RELATIVE_SD: f64 = 0.04;
 
 /// Returns the friction from a probe along y; bias and drift of the force are estimated in the air before and after.
 pub fn friction(probe: &Curves) -> Option<Friction> {
     let moved = probe.target.as_ref().unwrap_or(&probe.tcp);
-    let speed: Vec<f64> = rates(&smoothed(moved, REACH)).iter().map(|rate| rate.y).collect();
+    let speed: Vec<f64> = rates(&smoothed(moved, HALF_WIDTH)).iter().map(|rate| rate.y).collect();
     let fastest = speed.iter().map(|v| v.abs()).fold(0.0, f64::max);
-    let moving = |i: usize| speed[i].abs() > MOVING * fastest;
+    let moving = |i: usize| speed[i].abs() > MIN_SPEED * fastest;
     let force = undrifted(probe, moving)?;
-    let least = (SLIDE_S / STEP_S) as usize;
+    let least = (MIN_SLIDE_S / STEP_S) as usize;
     let each = |sign: f64| -> Vec<Slide> {
-        let on = |i: usize| sign * speed[i] > MOVING * fastest && force[i].z > CONTACT_N;
+        let on = |i: usize| sign * speed[i] > MIN_SPEED * fastest && force[i].z > MIN_NORMAL_N;
         let long = runs_of(speed.len(), on).into_iter().filter(|range| range.len() >= least);
         long.map(|range| slide(&force, sign, range)).collect()
     };
@@ -214,7 +214,7 @@ pub fn friction(probe: &Curves) -> Option<Friction> {
     let coefficient = both.map(|(a, b)| {
         let mean = libm::tan(0.5 * (a.mean + b.mean));
         let sd = 0.5 * libm::hypot(a.sd, b.sd);
-        Estimate { mean, sd: sd.max(FRICTION_FLOOR * mean) }
+        Estimate { mean, sd: sd.max(MIN_FRICTION_RELATIVE_SD * mean) }
     });
     let slides = [forth, back].concat();
     (!slides.is_empty()).then_some(Friction { slides, coefficient })
@@ -224,13 +224,13 @@ pub fn friction(probe: &Curves) -> Option<Friction> {
 /// than during the slides.
 fn undrifted(probe: &Curves, sliding: impl Fn(usize) -> bool) -> Option<Vec<Vector3<f64>>> {
     let face = mean((0..probe.tcp.len()).filter(|&i| sliding(i)).map(|i| probe.tcp[i].z))?;
-    let in_air = |i: &usize| probe.tcp[*i].z > face + LIFTED;
+    let in_air = |i: &usize| probe.tcp[*i].z > face + MIN_AIR_HEIGHT;
     let first = (0..probe.tcp.len()).take_while(in_air).count();
     let last = (0..probe.tcp.len()).rev().take_while(in_air).count();
     let air = |range: Range<usize>| {
         let middle = 0.5 * (range.start + range.end) as f64;
         let forces = &probe.force[range];
-        (forces.len() > 4 * REACH).then(|| (middle, curves::mean(forces)))
+        (forces.len() > 4 * HALF_WIDTH).then(|| (middle, curves::mean(forces)))
     };
     let before = air(0..first)?;
     let after = air(probe.tcp.len() - last..probe.tcp.len()).unwrap_or(before);
@@ -238,7 +238,7 @@ fn undrifted(probe: &Curves, sliding: impl Fn(usize) -> bool) -> Option<Vec<Vect
         true => (after.1 - before.1) / (after.0 - before.0),
         false => Vector3::zeros(),
     };
-    let force = smoothed(&probe.force, 2 * REACH);
+    let force = smoothed(&probe.force, 2 * HALF_WIDTH);
     let less = |(i, force): (usize, Vector3<f64>)| force - before.1 - slope * (i as f64 - before.0);
     Some(force.into_iter().enumerate().map(less).collect())
 }
@@ -246,14 +246,14 @@ fn undrifted(probe: &Curves, sliding: impl Fn(usize) -> bool) -> Option<Vec<Vect
 /// Returns the slide over a range of points, along +y for a positive `sign`.
 fn slide(force: &[Vector3<f64>], sign: f64, range: Range<usize>) -> Slide {
     let ratio = |from: f64, to: f64| {
-        let place = |share: f64| range.start + (share * range.len() as f64) as usize;
+        let place = |part: f64| range.start + (part * range.len() as f64) as usize;
         let part = &force[place(from)..place(to)];
         let sum: Vector3<f64> = part.iter().sum();
         // Friction acts against the slide.
         -sign * sum.y / sum.z
     };
     let (middle, last) = (ratio(0.5, 0.7), ratio(0.75, 0.95));
-    Slide { forth: sign > 0.0, ratio: last, rising: last > (1.0 + RISING) * middle }
+    Slide { forth: sign > 0.0, ratio: last, rising: last > (1.0 + MAX_RISE) * middle }
 }
 
 /// Returns the ranges of consecutive indices below `count` for which a condition holds.

@@ -10,9 +10,9 @@ use std::f64::consts::{PI, TAU};
 /// Standard gravity, m/s^2.
 const GRAVITY: f64 = 9.80665;
 /// Distance from the base, mm, below which the unit is taken to be metres.
-const NEAREST_MM: f64 = 10.0;
+const MIN_DISTANCE_MM: f64 = 10.0;
 /// Largest rotation of the TCP out of its upright orientation about y and z, rad; the model only has a tilt about x.
-const ASKEW: f64 = 0.5;
+const MAX_ROTATION: f64 = 0.5;
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -57,7 +57,7 @@ impl Frame {
             Ok(UnitQuaternion::from_scaled_axis(turn))
         };
         let origin = Vector3::from(check.each("origin_mm", raw.origin_mm, Check::finite)?);
-        let (far, fits) = (origin.norm(), (NEAREST_MM..=1e4).contains(&origin.norm()));
+        let (far, fits) = (origin.norm(), (MIN_DISTANCE_MM..=1e4).contains(&origin.norm()));
         let must = "lie 10 .. 10000 from the base (mm); metres must be multiplied by 1000";
         check.require("origin_mm", far, fits, must)?;
         let rotation = turn("axis_angle_rad", raw.axis_angle_rad)?;
@@ -98,7 +98,7 @@ impl Frame {
         let tilt = self.base.rotation.inverse() * rotation * self.upright.inverse();
         let turned = tilt.scaled_axis();
         let askew = turned.yz().norm();
-        if askew > ASKEW || turned.x.abs() > PI / 2.0 {
+        if askew > MAX_ROTATION || turned.x.abs() > PI / 2.0 {
             let [x, y, z]: [f64; 3] = turned.map(f64::to_degrees).into();
             return Err(format!(
                 "the tool is rotated by ({x:.0}, {y:.0}, {z:.0}) degrees about the task's axes from \

@@ -1,19 +1,29 @@
 //! Log of one attempt or probe: commanded and measured TCP, and the force on the tool.
 
+use super::curves::STEP_S;
+use ask_tell::normal::StandardNormal;
+use ask_tell::stream::stream;
 use input::units::{DEG, MM};
 use input::{InputError, Place};
 use insertion::outcome::Outcome;
 use insertion::space::Design;
 use insertion::trial::{Sample, Tcp};
 use nalgebra::Vector3;
+use rand::RngExt;
 use std::fmt::Write as _;
 
 /// Smallest number of samples: 0.1 s at 500 Hz.
-pub const FEWEST: usize = 50;
+pub const MIN_SAMPLES: usize = 50;
 /// Largest number of samples: 0.1 GB in memory.
-pub const MOST: usize = 1_000_000;
+pub const MAX_SAMPLES: usize = 1_000_000;
 /// Longest duration of a log, s. It bounds the number of points after interpolation at regular times.
-pub const LONGEST_S: f64 = 600.0;
+pub const MAX_DURATION_S: f64 = 600.0;
+
+/// Standard deviations along each axis of a typical force sensor, N: noise of a sample, bias, and linear drift until the
+/// end of a log.
+const NOISE_N: f64 = 0.5;
+const BIAS_N: f64 = 1.0;
+const DRIFT_N: f64 = 1.0;
 
 /// Required columns: time, TCP and force on the tool, in the task's frame.
 pub const COLUMNS: [&str; 8] = ["t_s", "x_mm", "y_mm", "z_mm", "tilt_deg", "fx_n", "fy_n", "fz_n"];
@@ -40,7 +50,7 @@ pub struct LogSample {
 pub struct Log {
     /// Path of the file as given.
     pub file: String,
-    /// At least [`FEWEST`] and at most [`MOST`] samples.
+    /// At least [`MIN_SAMPLES`] and at most [`MAX_SAMPLES`] samples.
     pub samples: Vec<LogSample>,
 }
 
@@ -65,9 +75,11 @@ impl Log {
     /// If there are too few or too many, a number is not finite, time does not increase, or the log is too long.
     pub fn new(file: &str, samples: Vec<LogSample>) -> Result<Self, InputError> {
         let whole = |problem: String| Err(Place::file(file).fault(problem));
-        if !(FEWEST..=MOST).contains(&samples.len()) {
+        if !(MIN_SAMPLES..=MAX_SAMPLES).contains(&samples.len()) {
             let count = samples.len();
-            return whole(format!("has {count} samples; it must have {FEWEST} to {MOST}"));
+            return whole(format!(
+                "has {count} samples; it must have {MIN_SAMPLES} to {MAX_SAMPLES}"
+            ));
         }
         for (i, sample) in samples.iter().enumerate() {
             let problem = match i.checked_sub(1).and_then(|before| samples.get(before)) {
@@ -82,9 +94,9 @@ impl Log {
             return Err(Place::file(file).line(sample.line).fault(problem));
         }
         let lasts = samples[samples.len() - 1].time_s - samples[0].time_s;
-        if lasts > LONGEST_S {
+        if lasts > MAX_DURATION_S {
             return whole(format!(
-                "lasts {lasts:.0} s; an attempt lasts {LONGEST_S} s at most: cut the log, or mend its clock"
+                "lasts {lasts:.0} s; an attempt lasts {MAX_DURATION_S} s at most: cut the log, or mend its clock"
             ));
         }
         Ok(Log { file: file.to_owned(), samples })
@@ -114,6 +126,31 @@ impl Log {
         text.push('\n');
         text
     }
+
+    /// Adds the errors of a force sensor to the log of a perfect one, from the random stream `number` of `seed`: bias,
+    /// drift, noise, and the inertial force of a tool below the sensor, kg.
+    pub fn add_sensor_errors(&mut self, tool_mass: f64, seed: u64, number: u64) {
+        let mut random = stream(seed, number, "sensor");
+        let mut normal =
+            |sd: f64| Vector3::from_fn(|_, _| sd * random.sample::<f64, _>(StandardNormal));
+        let (bias, drift) = (normal(BIAS_N), normal(DRIFT_N));
+        let positions = self.samples.iter().map(|sample| sample.tcp.position).collect();
+        let accelerations = rates(rates(positions));
+        let last = (accelerations.len() - 1) as f64;
+        for (i, LogSample { force, .. }) in self.samples.iter_mut().enumerate() {
+            let part = i as f64 / last;
+            *force += bias + part * drift + normal(NOISE_N) - tool_mass * accelerations[i];
+        }
+    }
+}
+
+/// Returns the time derivatives of points `STEP_S` apart, by central differences, one-sided at both ends.
+fn rates(points: Vec<Vector3<f64>>) -> Vec<Vector3<f64>> {
+    let rate = |i: usize| {
+        let (a, b) = (i.saturating_sub(1), (i + 1).min(points.len() - 1));
+        (points[b] - points[a]) / ((b - a) as f64 * STEP_S)
+    };
+    (0..points.len()).map(rate).collect()
 }
 
 impl LogSample {

@@ -9,12 +9,14 @@ use input::units::N_PER_MM;
 
 /// Fractions of the peak force between which the compliance is fitted, where the seated plug is only pressed.
 const FORCE_SHARES: [f64; 2] = [0.4, 0.9];
-/// Smallest peak force, N, and smallest number of intervals between points, for a fit.
-const PRESSED: (f64, usize) = (20.0, 4);
+/// Smallest peak force for a fit, N.
+const MIN_FORCE_N: f64 = 20.0;
+/// Smallest number of intervals between points for a fit.
+const MIN_INTERVALS: usize = 4;
 /// Smallest additional compliance for a remark, m/N (125 N/mm): more than uncertain stiffness of the fingers explains.
-const LEAST_COMPLIANCE: f64 = 8e-6;
+const MIN_COMPLIANCE: f64 = 8e-6;
 /// Smallest number of attempts for a remark.
-const LEAST_ATTEMPTS: usize = 3;
+const MIN_ATTEMPTS: usize = 3;
 
 /// Returns a remark if the median of the additional compliance over the attempts is too large; `file` is the table of
 /// the runs.
@@ -35,7 +37,7 @@ fn compliant(file: &str, compliances: &[f64]) -> Option<Remark> {
         1.0 / more / N_PER_MM
     );
     let remark = Remark { file: file.to_owned(), lines: None, text, serious: false };
-    (compliances.len() >= LEAST_ATTEMPTS && more > LEAST_COMPLIANCE).then_some(remark)
+    (compliances.len() >= MIN_ATTEMPTS && more > MIN_COMPLIANCE).then_some(remark)
 }
 
 /// Returns the compliance, m/N: the descent of the TCP per newton while the force rises in the push, which begins at
@@ -49,8 +51,7 @@ fn compliance(curves: &Curves, push: usize) -> Option<f64> {
     };
     let to = before(most, FORCE_SHARES[1])?;
     let from = before(to, FORCE_SHARES[0])?;
-    let (least, points) = PRESSED;
-    if largest < least || to - from < points {
+    if largest < MIN_FORCE_N || to - from < MIN_INTERVALS {
         return None;
     }
     let count = (to - from + 1) as f64;

@@ -2,7 +2,7 @@
 //! in the frame of the robot's base.
 
 use super::frame::Frame;
-use super::log::{COLUMNS, Log, LogSample, MOST, TARGETS};
+use super::log::{COLUMNS, Log, LogSample, MAX_SAMPLES, TARGETS};
 use crate::experiments::line::LARGEST_FORCE_N;
 use ask_tell::statistics::median;
 use input::files;
@@ -16,11 +16,11 @@ use std::path::Path;
 /// Largest size of a log, bytes: ten minutes at 500 Hz.
 pub const LARGEST_LOG: u64 = 64 << 20;
 /// Largest plausible coordinate of a position, m.
-const FARTHEST: f64 = 10.0;
+const MAX_REACH: f64 = 10.0;
 /// Largest coordinate of a log, mm, below which its unit is taken to be metres.
-const NEAREST_MM: f64 = 1.0;
+const MIN_COORDINATE_MM: f64 = 1.0;
 /// Largest plausible median time between samples, s.
-const SLOWEST_S: f64 = 0.5;
+const MAX_GAP_S: f64 = 0.5;
 
 /// Reads the text of a log.
 ///
@@ -49,8 +49,10 @@ pub fn parse(text: &str, file: &str, frame: Option<&Frame>) -> Result<Log, Input
     let table = Table::new(header, frame).map_err(|problem| fault(at, problem))?;
     let mut samples: Vec<LogSample> = Vec::new();
     for (at, line) in lines.filter(|(_, line)| !ignored(line)) {
-        if samples.len() == MOST {
-            return Err(whole(format!("has more than {MOST} samples; cut it to the attempt")));
+        if samples.len() == MAX_SAMPLES {
+            return Err(whole(format!(
+                "has more than {MAX_SAMPLES} samples; cut it to the attempt"
+            )));
         }
         let mut sample = table.sample(at + 1, line).map_err(|problem| fault(at, problem))?;
         if let (None, Some(target)) = (table.rtde, &mut sample.target) {
@@ -66,13 +68,13 @@ pub fn parse(text: &str, file: &str, frame: Option<&Frame>) -> Result<Log, Input
 /// Checks the units of time and position by the values of a whole log.
 fn check_units(log: &Log) -> Result<(), String> {
     let gap = median_gap(log);
-    if gap > SLOWEST_S {
+    if gap > MAX_GAP_S {
         return Err(format!(
             "the time between its lines is {gap}, which looks like milliseconds; give seconds"
         ));
     }
     let far = log.samples.iter().map(|sample| sample.tcp.position.amax()).fold(0.0, f64::max);
-    if far < NEAREST_MM * MM {
+    if far < MIN_COORDINATE_MM * MM {
         return Err(format!(
             "no coordinate exceeds {} mm, so that they look like metres; give millimetres",
             shown(far / MM)
@@ -190,7 +192,7 @@ impl<'a> Table<'a> {
                 (tcp, target, frame.force_of_base(vector(force)))
             }
             None => {
-                let of = |place: &[f64]| match place.iter().find(|mm| mm.abs() > FARTHEST / MM) {
+                let of = |place: &[f64]| match place.iter().find(|mm| mm.abs() > MAX_REACH / MM) {
                     Some(mm) => Err(format!(
                         "a coordinate of {} looks like micrometres; give millimetres",
                         shown(*mm)
@@ -214,7 +216,7 @@ impl<'a> Table<'a> {
 /// Converts a pose, position (m) and axis-angle (rad), from the base's to the task's frame.
 fn of_base(frame: &Frame, pose: &[f64]) -> Result<Tcp, String> {
     let (place, turn) = pose.split_at(3);
-    if let Some(far) = place.iter().find(|m| m.abs() > FARTHEST) {
+    if let Some(far) = place.iter().find(|m| m.abs() > MAX_REACH) {
         let far = shown(*far);
         return Err(format!("a position of {far} looks like millimetres; RTDE records metres"));
     }

@@ -12,7 +12,7 @@ const LASTS_S: f64 = 0.06;
 /// Beginning and end of the interval from which noise and bias are estimated, s before the touch.
 const NEAR_AIR_S: [f64; 2] = [0.3, 0.02];
 /// Smallest mean force of a touch, N and in standard errors; the larger of the two applies.
-const LEAST: [f64; 2] = [1.5, 5.0];
+const MIN_TOUCH: [f64; 2] = [1.5, 5.0];
 /// Mean force, N, below which the tool is in the air; two standard errors if that is more.
 const LEFT_N: f64 = 0.05;
 
@@ -82,7 +82,7 @@ fn onset(log: &Log, size: fn(Vector3<f64>) -> f64) -> Option<usize> {
     let touches = |&at: &usize| {
         let short = after(log, at, MEAN_S).max(at + 3);
         let long = after(log, at, LASTS_S).max(short);
-        let least = LEAST[0].max(LEAST[1] * noise(&start, short - at));
+        let least = MIN_TOUCH[0].max(MIN_TOUCH[1] * noise(&start, short - at));
         long < samples.len()
             && over(&start, at, short) > least
             && over(&start, short, long.max(short + 1)) > least

@@ -190,8 +190,8 @@ impl Evaluator {
         }
     }
 
-    /// Measures a specimen according to a plan. The result is invalid once `stop` is set.
-    pub fn measure(
+    /// Simulates a specimen according to a plan. The result is invalid once `stop` is set.
+    pub fn simulate(
         &self,
         specimen: &Specimen,
         search: Search,
@@ -212,21 +212,21 @@ impl Evaluator {
         Ok(Evaluation { taught, ..evaluation })
     }
 
-    /// Measures a specimen, with a taught start if the nominal start fails.
-    pub fn measure_or_teach(
+    /// Simulates a specimen, with a taught start if the nominal start fails.
+    pub fn simulate_or_teach(
         &self,
         specimen: &Specimen,
         search: Search,
         plan: &Plan,
         stop: &AtomicBool,
     ) -> Result<Evaluation, DesignError> {
-        let evaluation = self.measure(specimen, search, plan, stop)?;
+        let evaluation = self.simulate(specimen, search, plan, stop)?;
         if evaluation.window.nominal == Outcome::Inserted {
             return Ok(evaluation);
         }
         let mut taught = specimen.clone();
         taught.task.strategy.rule = StartRule::Taught;
-        self.measure(&taught, search, plan, stop)
+        self.simulate(&taught, search, plan, stop)
     }
 
     /// Measures the [firm window](firm) of a specimen by [`firm::REPEATS`] repeats; `measured` has its window. The

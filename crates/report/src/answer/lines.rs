@@ -3,7 +3,7 @@
 use super::words::{self, ends_mm, evaluated, interval, mm, span};
 use super::{Answer, Front, OnTask, Recommended, Spread, Ties, Verdict};
 use ask_tell::statistics::mean;
-use calibration::order::RankCorrelation;
+use calibration::rank_correlation::RankCorrelation;
 use insertion::evaluation::objective::Measure;
 use insertion::evaluation::robustness::firm::REPEATS;
 use insertion::evaluation::{Evaluation, grid_mm};

@@ -12,7 +12,7 @@ mod trust;
 mod verdict;
 pub mod words;
 
-use calibration::order::{RankCorrelation, rank_correlation};
+use calibration::rank_correlation::{RankCorrelation, rank_correlation};
 use insertion::evaluation::Evaluation;
 use insertion::space::Design;
 use study::{Recorded, StudyRecord, Volume, Walked, volume};

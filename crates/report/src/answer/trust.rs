@@ -1,7 +1,7 @@
 //! Evidence for an answer: robot measurements of its finger or of similar ones.
 
-use calibration::order::errors_percent;
 use calibration::published::{BENCH, of_task};
+use calibration::rank_correlation::errors_percent;
 use insertion::space::Design;
 use insertion::stiffness::{Measurement, designs};
 use study::{Recorded, StudyRecord};

@@ -89,7 +89,7 @@ pub struct FingerWindows {
 }
 
 impl FingerWindows {
-    pub fn measure(
+    pub fn simulate(
         cell: &HiddenCell<'_>,
         finger: &Measurement,
         engine: EngineKind,

@@ -1,17 +1,13 @@
 //! Simulated logs of attempts in hidden cells, with the errors of a real force sensor.
 
 use super::cell::{FingerWindows, HiddenCell};
-use ask_tell::normal::StandardNormal;
-use ask_tell::stream::stream;
-use calibration::identify::log::{Log, LogSample, of_samples};
+use calibration::identify::log::of_samples;
 use finger_opt::failure::Failure;
 use input::units::MM;
 use insertion::evaluation::evaluator::Specimen;
 use insertion::space::Design;
 use insertion::trial::engine::EngineKind;
 use insertion::trial::{Course, Grasp, Probe, Rig, Sample};
-use nalgebra::Vector3;
-use rand::RngExt;
 use std::path::Path;
 use study::write_file;
 
@@ -19,10 +15,6 @@ use study::write_file;
 pub const LOGGED: [[f64; 2]; 2] = [[10.0, 0.0], [30.0, 0.0]];
 /// Time between two samples, s.
 const EVERY_S: f64 = 2e-3;
-/// Standard deviations along each axis, N: noise of a sample, bias, and linear drift until the end of a log.
-const NOISE_N: f64 = 0.5;
-const BIAS_N: f64 = 1.0;
-const DRIFT_N: f64 = 1.0;
 /// Mass of the tool on the sensor, kg.
 const TOOL_KG: f64 = 1.0;
 /// Text of `frame.toml`: no rotation, since the logs are in the task's frame already, and the mass of the tool.
@@ -59,7 +51,7 @@ pub fn write(
             };
             let name = format!("{density}-{direction}-{i}.csv");
             let mut log = of_samples(&name, &samples).map_err(Failure::input)?;
-            add_sensor_errors(&mut log, cell.number, (finger * 10 + i) as u64);
+            log.add_sensor_errors(TOOL_KG, cell.number, (finger * 10 + i) as u64);
             write_file(&folder.join(&name), &log.csv())?;
             let offset = offset_mm.map_or(String::new(), |mm| format!("{mm:.1}"));
             runs += &format!("{name},{density},{direction},{offset},{outcome}\n");
@@ -73,29 +65,4 @@ fn probe(rig: &dyn Rig, grasp: Grasp<'_>) -> Result<Vec<Sample>, Failure> {
     let found = rig.follow(grasp, Course::Probe(Probe::DEFAULT), EVERY_S);
     let samples = found.into_iter().next().map(|(_, samples)| samples);
     samples.ok_or_else(|| Failure::running("the engine simulates no probe"))
-}
-
-/// Adds bias, drift and noise of a sensor, and the inertial force of the tool that it carries.
-fn add_sensor_errors(log: &mut Log, cell: u64, number: u64) {
-    let mut random = stream(cell, number, "sensor");
-    let mut normal =
-        |sd: f64| Vector3::from_fn(|_, _| sd * random.sample::<f64, _>(StandardNormal));
-    let (bias, drift) = (normal(BIAS_N), normal(DRIFT_N));
-    let positions: Vec<Vector3<f64>> =
-        log.samples.iter().map(|sample| sample.tcp.position).collect();
-    let accelerations = rates(&rates(&positions));
-    let last = (positions.len() - 1) as f64;
-    for (i, LogSample { force, .. }) in log.samples.iter_mut().enumerate() {
-        let share = i as f64 / last;
-        *force += bias + share * drift + normal(NOISE_N) - TOOL_KG * accelerations[i];
-    }
-}
-
-/// Returns the time derivatives, per second, by central differences, one-sided at both ends.
-fn rates(values: &[Vector3<f64>]) -> Vec<Vector3<f64>> {
-    let rate = |i: usize| {
-        let (a, b) = (i.saturating_sub(1), (i + 1).min(values.len() - 1));
-        (values[b] - values[a]) / ((b - a) as f64 * EVERY_S)
-    };
-    (0..values.len()).map(rate).collect()
 }

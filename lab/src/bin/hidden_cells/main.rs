@@ -51,7 +51,7 @@ fn main() -> Result<(), Failure> {
         let cell = HiddenCell::draw(&evaluator, number)?;
         let fingers = insertion::stiffness::designs();
         let windows =
-            fingers.par_iter().map(|finger| FingerWindows::measure(&cell, finger, engine));
+            fingers.par_iter().map(|finger| FingerWindows::simulate(&cell, finger, engine));
         let windows = windows.collect::<Result<Vec<_>, Failure>>()?;
         windows.iter().for_each(|finger| truth += &finger.line(&cell));
         let folder = logs.join(number.to_string());

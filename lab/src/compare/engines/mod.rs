@@ -166,7 +166,7 @@ pub fn text(check: &CrossCheck, [first, second]: [&str; 2]) -> String {
 
 pub fn json(check: &CrossCheck, names: [&str; 2]) -> Value {
     let trial = |pair: &TrialPair| {
-        let measured = json!({
+        let results = json!({
             "finger": pair.subject.infill(),
             "offset_mm": grid_mm(pair.offset),
             "beyond_end_mm": grid_mm(pair.from_end),
@@ -174,7 +174,7 @@ pub fn json(check: &CrossCheck, names: [&str; 2]) -> Value {
             "agrees": pair.agrees(),
             "tip_distance_mm": pair.tip_mm,
         });
-        subject_json(&pair.subject.task, &pair.subject.design, measured)
+        subject_json(&pair.subject.task, &pair.subject.design, results)
     };
     json!({
         "engines": names,

@@ -95,13 +95,13 @@ fn words(found: Agreement) -> String {
 pub fn json(tables: &[TaskTable]) -> Value {
     let design = |task: &str, row: &DesignRow| {
         let [ours, simulation, bench] = row.readings;
-        let measured = json!({
+        let results = json!({
             "window": window_json(&row.window),
             "ours": ours,
             "simulation": simulation,
             "bench": bench,
         });
-        subject_json(task, &row.design, measured)
+        subject_json(task, &row.design, results)
     };
     let task = |table: &TaskTable| {
         json!({

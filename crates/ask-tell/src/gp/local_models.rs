@@ -1,7 +1,7 @@
 //! Local Gaussian processes of the points nearest to a location, where one process of all points would
 //! cost too much.
 
-use super::data::{Standardised, spread};
+use super::data::{Standardised, evenly_spaced};
 use super::hyperparameters::Hyperparameters;
 use super::model::{Gp, ScaledPoints};
 use super::trained::{Goal, TrainedModels};
@@ -13,7 +13,7 @@ pub(super) const APPROXIMATE_NEIGHBOURS: usize = 24;
 /// Observations for local models, each of a subset near a location (the local approximation of Gramacy and
 /// Apley 2015, J. Comput. Graph. Stat. 24:561, with the nearest points instead of optimised ones).
 #[derive(Debug, Clone)]
-pub(super) struct Neighbours {
+pub(super) struct LocalModels {
     /// Coordinates of the points on the free axes.
     pub x: Vec<Vec<f64>>,
     /// The points in units of the length scales of the first objective.
@@ -27,7 +27,7 @@ pub(super) struct Neighbours {
     pub goal: Goal,
 }
 
-impl Neighbours {
+impl LocalModels {
     /// Creates the models of at least one objective with values at `x`; the initial goal is any feasible point.
     pub fn new(
         x: Vec<Vec<f64>>,
@@ -36,7 +36,7 @@ impl Neighbours {
         zeros: Vec<f64>,
     ) -> Self {
         let scaled = ScaledPoints::new(&x, &thetas[0]);
-        Neighbours { x, scaled, data, thetas, zeros, goal: Goal::Feasible }
+        LocalModels { x, scaled, data, thetas, zeros, goal: Goal::Feasible }
     }
 
     /// Returns models conditioned on the `count` points nearest to a location and on `count / 3` points evenly
@@ -79,7 +79,7 @@ impl Neighbours {
     /// Returns the indices of the points of the model at a location.
     fn chosen(&self, location: &[f64], count: usize) -> BTreeSet<usize> {
         let near = self.by_distance(location, count).into_iter().map(|(_, i)| i);
-        near.chain(spread(self.x.len(), count / 3)).collect()
+        near.chain(evenly_spaced(self.x.len(), count / 3)).collect()
     }
 
     /// Returns the squared distances, in length scales, and the indices of the nearest points, the farthest last.
@@ -100,7 +100,7 @@ mod tests {
     use super::super::data::standardise;
     use super::*;
 
-    fn known() -> Neighbours {
+    fn known() -> LocalModels {
         let x: Vec<Vec<f64>> =
             (0..60).map(|i| vec![f64::from(i) / 59.0, f64::from(i * 23 % 60) / 59.0]).collect();
         let values: Vec<f64> = x.iter().map(|p| libm::sin(5.0 * p[0]) + p[1]).collect();
@@ -108,7 +108,7 @@ mod tests {
         let data = standardise(&values, 1e-3).unwrap();
         let theta =
             Hyperparameters { log_length: vec![-1.0, 0.0], log_signal: 0.0, log_noise: -12.0 };
-        Neighbours::new(x, vec![data], vec![theta], Vec::new())
+        LocalModels::new(x, vec![data], vec![theta], Vec::new())
     }
 
     #[test]
@@ -140,7 +140,7 @@ mod tests {
         let mut known = known();
         let location = [0.11, 0.93];
         let at =
-            |known: &Neighbours| known.near(&location, 30).unwrap().models[0].predict(&location);
+            |known: &LocalModels| known.near(&location, 30).unwrap().models[0].predict(&location);
         let before = at(&known);
         known.believe(&location);
         let after = at(&known);

@@ -1,6 +1,5 @@
 //! The checked profile of a printed finger: outline, skin and ribs.
 
-use super::FingerError;
 use super::infill::{InfillDesign, NARROWEST_VOID, RibLines};
 use super::polygon::{self, HalfPlane, Ring, without_repeats};
 use crate::holes::{Block, Holes};
@@ -34,7 +33,7 @@ impl Geometry {
     ///
     /// # Errors
     /// If the parts of the finger do not fit together; the message names file and key.
-    pub fn new(finger: &PrintedFinger, design: &InfillDesign) -> Result<Self, FingerError> {
+    pub fn new(finger: &PrintedFinger, design: &InfillDesign) -> Result<Self, InputError> {
         let lines = RibLines::new(finger, design);
         let check = Check { file: &finger.file };
         check_outline(check, &finger.outline)?;

@@ -24,20 +24,23 @@ pub struct Mesh {
     pub triangles: Vec<[u32; 6]>,
 }
 
-/// Reason why a profile has no mesh, or its mesh no stiffness matrix; messages complete "cannot be meshed: ".
+/// Reason why a profile has no mesh, or its mesh no stiffness matrix.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum MeshError {
     /// Rings that cross or touch.
-    #[error("its edges cross or touch one another")]
+    #[error("the profile cannot be meshed: its edges cross or touch one another")]
     Crossing,
     /// Walls or gaps that need too many triangles.
-    #[error("its mesh needs more than {MAX_VERTICES} vertices: a wall or gap is too thin")]
+    #[error(
+        "the profile cannot be meshed: it needs more than {MAX_VERTICES} vertices: a wall or gap is \
+         too thin"
+    )]
     TooFine,
     /// Nodes that are not connected to the base.
     #[error("a part of the finger is not connected to its base")]
     Disconnected,
     /// A stiffness matrix that is not positive definite.
-    #[error("its stiffness matrix is not positive definite")]
+    #[error("the stiffness matrix of the finger is not positive definite")]
     NotPositiveDefinite,
 }
 

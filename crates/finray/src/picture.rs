@@ -1,6 +1,5 @@
 //! A picture of a finger that bends under a load on its pad.
 
-use super::FingerError;
 use super::condense::condense;
 use super::elasticity::{PlaneStress, Slab};
 use super::geometry::Geometry;
@@ -10,6 +9,7 @@ use super::meshed::{MeshedFinger, RigidFace};
 use super::stiffness::PlanarStiffness;
 use crate::outline::Outline;
 use drawing::{Drawing, Font, Style, View};
+use input::InputError;
 use input::units::MM;
 use nalgebra::{Point2, Vector2, Vector3};
 
@@ -27,9 +27,8 @@ const BAR: f64 = 10.0;
 ///
 /// # Errors
 /// If the finger's stiffness cannot be computed.
-pub fn svg(geometry: &Geometry, force: [f64; 2]) -> Result<String, FingerError> {
-    let bent =
-        BentFinger::new(geometry, force).map_err(|error| FingerError::mesh(geometry, error))?;
+pub fn svg(geometry: &Geometry, force: [f64; 2]) -> Result<String, InputError> {
+    let bent = BentFinger::new(geometry, force).map_err(|error| geometry.finger.fault(error))?;
     let [left, top, right, bottom] = MARGIN.map(|mm| mm * SCALE);
     let view = View { origin: Point2::new(left, top), scale: SCALE / MM };
     let Outline { length, width, clamped, .. } = geometry.finger.outline;

@@ -3,7 +3,7 @@
 use crate::holes::{Holes, RawHoles};
 use crate::outline::Outline;
 use input::units::{DEG, MM};
-use input::{Check, Document, InputError, syntax};
+use input::{Check, Document, InputError, Place, syntax};
 use nalgebra::Point2;
 use serde::Deserialize;
 
@@ -128,6 +128,11 @@ impl PrintedFinger {
     /// See [`PrintedFinger::parse`].
     pub fn from_table(table: toml::Table, file: &str) -> Result<Self, InputError> {
         PrintedFinger::checked(table.try_into().map_err(|error| syntax(file, "", &error))?, file)
+    }
+
+    /// Returns an error about the finger as a whole, not about one of its values.
+    pub fn fault(&self, problem: impl ToString) -> InputError {
+        Place::file(&self.file).fault(problem.to_string())
     }
 
     fn checked(raw: RawFinger, file: &str) -> Result<Self, InputError> {

@@ -1,7 +1,6 @@
 //! Measured stiffness of fingers: CSV file and its checks.
 
 use ask_tell::statistics::median;
-use finray::FingerError;
 use input::shipped::STIFFNESS;
 use input::units::N_PER_MM;
 use input::{InputError, Place, Placed, check_quotes};
@@ -77,7 +76,8 @@ impl Measurement {
 /// Error of measured stiffnesses.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SurrogateError {
-    /// Invalid CSV, a header other than [`HEADER`], an invalid value, or a column in another unit.
+    /// Invalid CSV, a header other than [`HEADER`], an invalid value, a column in another unit, or a measured finger
+    /// whose stiffness cannot be computed.
     #[error(transparent)]
     Fault(#[from] InputError),
     /// No measured design.
@@ -89,9 +89,6 @@ pub enum SurrogateError {
          nearly alike"
     )]
     TooMany(usize),
-    /// A measured finger whose stiffness cannot be computed.
-    #[error(transparent)]
-    Finger(#[from] FingerError),
     /// No model could be fitted along the axis of this [`Axis::label`].
     #[error(
         "no stiffness model in the {0} direction can be fitted: the designs must differ in density \
@@ -104,7 +101,6 @@ impl Placed for SurrogateError {
     fn place(&self) -> Place {
         match self {
             SurrogateError::Fault(fault) => fault.place(),
-            SurrogateError::Finger(error) => error.place(),
             _ => Place::default(),
         }
     }

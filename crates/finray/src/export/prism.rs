@@ -103,9 +103,7 @@ impl Prism {
 
     /// Extrudes an outer ring with holes (clockwise rings) from 0 to `depth`, mm.
     fn new(outer: &Ring, holes: &[Ring], depth: f64) -> Result<Self, PrismError> {
-        let mesh = Mesh::coarsest(outer, holes).map_err(|error| {
-            PrismError(format!("the profile cannot be divided into triangles: {error}"))
-        })?;
+        let mesh = Mesh::coarsest(outer, holes).map_err(|error| PrismError(error.to_string()))?;
         let mut numbers: BTreeMap<u32, u32> = BTreeMap::new();
         let mut corners = Vec::new();
         let mut number = |node: u32| {

@@ -7,9 +7,9 @@ use crate::space::{DIRECTION_KEY, Design};
 use crate::surrogate::Prediction;
 use crate::task::Task;
 use crate::task::finger::Coupling;
-use finray::FingerError;
 use finray::mechanics::{FingerStiffness, StiffnessCache};
 use input::units::MM;
+use input::{Check, InputError};
 pub use parameters::numbers::{RCC_KEY, TILTING_KEY};
 use serde::{Deserialize, Serialize};
 
@@ -82,7 +82,7 @@ impl FingerSource {
         at_pad: &Prediction,
         design: &Design,
         task: &Task,
-    ) -> Result<Finger, FingerError> {
+    ) -> Result<Finger, InputError> {
         let rcc = design.get(RCC_KEY).map(|mm| mm * MM);
         let direction = design.get(DIRECTION_KEY).unwrap_or_default();
         match self {
@@ -93,7 +93,9 @@ impl FingerSource {
             }
             FingerSource::Computed(fingers) => {
                 if task.finger.coupling.is_some() {
-                    return Err(FingerError::Coupled { task: task.name.clone() });
+                    let problem = "is set, but the ribs couple the springs of a computed finger; \
+                                   delete it, or use --finger-model paper";
+                    return Check { file: &task.name }.fail("finger.coupling", problem);
                 }
                 let rcc = rcc.or(task.finger.rcc.map(|rcc| rcc.at(direction)));
                 let given = [rcc, design.get(TILTING_KEY)];
@@ -132,7 +134,7 @@ impl ComputedFingers {
     ///
     /// # Errors
     /// If the finger cannot be printed.
-    pub fn stiffness(&self, design: &Design) -> Result<FingerStiffness, FingerError> {
+    pub fn stiffness(&self, design: &Design) -> Result<FingerStiffness, InputError> {
         self.cache.stiffness(&self.file.with(design)?, &infill(design, None))
     }
 }

@@ -18,7 +18,7 @@ const SCALE: f64 = 12.0;
 /// Margins around the finger, mm: left, top, right, bottom.
 const MARGIN: [f64; 4] = [9.0, 12.0, 4.0, 11.0];
 /// Largest displacement in the picture, mm.
-const LONGEST: f64 = 5.0;
+const MAX_DISPLACEMENT: f64 = 5.0;
 /// Length of the scale bar, mm.
 const BAR: f64 = 10.0;
 
@@ -77,7 +77,7 @@ impl BentFinger {
         let motion = stiffness.compliance * Vector3::new(y, z, 0.0);
         let displacements = condensed.expand(&(&held.displacements * motion));
         let largest = displacements.iter().fold(0.0, |most: f64, d| most.max(d.abs()));
-        let exaggeration = round_down(LONGEST * MM / largest);
+        let exaggeration = round_down(MAX_DISPLACEMENT * MM / largest);
         Ok(BentFinger { meshed, displacements, exaggeration, motion })
     }
 

@@ -176,22 +176,22 @@ impl PrintedFinger {
 }
 
 /// Largest length, mm; above it the unit is wrong.
-const LONGEST_MM: f64 = 500.0;
+const MAX_LENGTH_MM: f64 = 500.0;
 /// Accepted moduli, GPa: silicone has about 0.001, steel 210.
 const MODULI_GPA: std::ops::RangeInclusive<f64> = 1e-4..=500.0;
 /// Largest angle, degrees; above it there is no notch.
-const STEEPEST_DEG: f64 = 60.0;
+const MAX_ANGLE_DEG: f64 = 60.0;
 
 /// Checks a length, mm; returns it in m.
 pub(super) fn length(check: Check<'_>, key: &str, value: f64) -> Result<f64, InputError> {
-    let fits = check.positive(key, value)? <= LONGEST_MM;
-    let must = format!("be at most {LONGEST_MM} (millimetres)");
+    let fits = check.positive(key, value)? <= MAX_LENGTH_MM;
+    let must = format!("be at most {MAX_LENGTH_MM} (millimetres)");
     Ok(check.require(key, value, fits, &must)? * MM)
 }
 
 fn angle(check: Check<'_>, key: &str, value: f64) -> Result<f64, InputError> {
-    let fits = check.not_negative(key, value)? <= STEEPEST_DEG;
-    let must = format!("be from 0 to {STEEPEST_DEG} (degrees)");
+    let fits = check.not_negative(key, value)? <= MAX_ANGLE_DEG;
+    let must = format!("be from 0 to {MAX_ANGLE_DEG} (degrees)");
     Ok(check.require(key, value, fits, &must)? * DEG)
 }
 

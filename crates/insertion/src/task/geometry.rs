@@ -245,11 +245,11 @@ pub type Triangles = (Vec<Point3<f64>>, Vec<[usize; 3]>);
 pub fn hull(points: &[Point3<f64>]) -> Option<Triangles> {
     let (corners, faces) = shapes::hull(points)?;
     let faces: Vec<_> = faces.iter().map(|face| face.map(|corner| corner as usize)).collect();
-    (surface_moments(&corners, &faces).0 > FLAT).then_some((corners, faces))
+    (surface_moments(&corners, &faces).0 > MIN_VOLUME).then_some((corners, faces))
 }
 
 /// Volume below which a hull counts as flat, m3.
-pub const FLAT: f64 = 1e-7 * MM * MM * MM;
+pub const MIN_VOLUME: f64 = 1e-7 * MM * MM * MM;
 
 /// Returns volume, centroid and second moments about it of a closed surface of outward triangles.
 pub fn surface_moments(corners: &[Point3<f64>], faces: &[[usize; 3]]) -> Moments {

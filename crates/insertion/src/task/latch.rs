@@ -2,7 +2,7 @@
 
 use super::Part;
 use super::geometry::Axis;
-use super::raw_part::THINNEST;
+use super::raw_part::MIN_EXTENT;
 use input::units::read::{gpa, mm};
 use input::{Check, InputError};
 use nalgebra::{Point3, Vector3};
@@ -77,7 +77,7 @@ pub fn check_latch(check: Check<'_>, raw: &RawLatch, parts: &[Part]) -> Result<L
     let [root, end] = [raw.root, raw.end].map(Vector3::from);
     let along = end - root;
     let (axis, length) = (raw.axis as usize, along.norm());
-    if length < THINNEST {
+    if length < MIN_EXTENT {
         return check.fail("plug.latch.end_mm", "must be at least 0.001 mm from root_mm");
     }
     if along[axis].abs() > MAX_SLANT * length {

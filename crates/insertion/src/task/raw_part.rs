@@ -64,7 +64,7 @@ pub struct RawEdges {
 pub const MAX_PARTS: usize = 3000;
 const MAX_CORNERS: usize = 256;
 /// Smallest extent of a part or an opening, m.
-pub const THINNEST: f64 = 1e-3 * MM;
+pub const MIN_EXTENT: f64 = 1e-3 * MM;
 
 /// Converts and checks the parts under a key.
 pub fn parts(check: Check<'_>, key: &str, parts: Vec<RawPart>) -> Result<Vec<Part>, InputError> {
@@ -114,7 +114,7 @@ fn part(check: Check<'_>, key: &str, part: RawPart) -> Result<Part, InputError> 
 
 /// Returns an interval, m, after checking that it is not too narrow.
 pub fn interval(check: Check<'_>, key: &str, range: [f64; 2]) -> Result<[f64; 2], InputError> {
-    if range[1] - range[0] < THINNEST {
+    if range[1] - range[0] < MIN_EXTENT {
         let [a, b] = range.map(units::mm);
         let problem = format!("is [{a}, {b}]; the second must exceed the first by 0.001 mm");
         return check.fail(key, problem);

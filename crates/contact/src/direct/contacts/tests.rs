@@ -33,7 +33,7 @@ fn reused_points_have_the_gaps_of_new_points() {
     let turned = |x: f64| Vector3::new(x, 0.5e-4, 0.3);
     let start = at(0.0, 0.0, 10.05e-3, turned(1e-4));
     for (pose, along, across) in [
-        (at(3e-6, 2e-6, 10.047e-3, turned(3e-4)), 1e-8, REUSE),
+        (at(3e-6, 2e-6, 10.047e-3, turned(3e-4)), 1e-8, REUSE_DISTANCE),
         (at(30e-6, 2e-6, 10.047e-3, turned(3e-4)), 1e-12, 1e-12),
     ] {
         let mut carried = cubes(start);

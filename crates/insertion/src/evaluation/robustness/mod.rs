@@ -93,7 +93,7 @@ pub fn evaluate(
 fn success_rate(drawn: &[Insertion], confidence: f64, race: Option<&Race>) -> SuccessRate {
     race::run(drawn.len() as u32, confidence, race, |draw| {
         let (rig, grasp, offset) = drawn[draw as usize];
-        rig.hold(grasp).trial(offset).outcome
+        rig.grasp(grasp).trial(offset).outcome
     })
 }
 
@@ -119,8 +119,8 @@ fn statistic(robust: &RobustRange, statistic: Statistic) -> Option<f64> {
     }
     Some(match statistic {
         Statistic::MeanMinusSd(factor) => robust.mean_mm() - factor * robust.sd_mm(),
-        Statistic::LowerTail(share) => {
-            let tail = ((share * count as f64).round() as usize).max(1);
+        Statistic::LowerTail(level) => {
+            let tail = ((level * count as f64).round() as usize).max(1);
             mean(&sorted(robust.ranges_mm.iter().copied())[..tail])?
         }
     })

@@ -6,7 +6,7 @@ use input::units::N_PER_MM;
 use input::{InputError, Place, Placed, check_quotes};
 use parameters::numbers;
 
-/// Direction of a finger's stiffness.
+/// Direction of a finger's stiffness; as a number, its index in [`Axis::ALL`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Axis {
     /// z, the direction of assembly: loads the ribs along their length.
@@ -21,10 +21,7 @@ impl Axis {
 
     /// Returns a short name for tables and plots.
     pub fn label(self) -> &'static str {
-        match self {
-            Axis::Assembly => "assembly (z)",
-            Axis::Compliance => "compliance (y)",
-        }
+        ["assembly (z)", "compliance (y)"][self as usize]
     }
 }
 
@@ -61,10 +58,7 @@ pub struct Measurement {
 impl Measurement {
     /// Returns the stiffness along one axis, N/m.
     pub fn stiffness(&self, axis: Axis) -> f64 {
-        match axis {
-            Axis::Assembly => self.assembly,
-            Axis::Compliance => self.compliance,
-        }
+        [self.assembly, self.compliance][axis as usize]
     }
 
     /// Returns density and direction of the infill.

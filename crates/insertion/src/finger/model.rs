@@ -7,6 +7,7 @@ use crate::space::{DIRECTION_KEY, Design};
 use crate::surrogate::Prediction;
 use crate::task::Task;
 use crate::task::finger::Coupling;
+use crate::value_name;
 use finray::mechanics::{FingerStiffness, StiffnessCache};
 use input::units::MM;
 use input::{Check, InputError};
@@ -26,11 +27,8 @@ pub enum FingerModelKind {
 
 impl FingerModelKind {
     /// Returns the name on the command line and in study files.
-    pub fn name(self) -> &'static str {
-        match self {
-            FingerModelKind::Paper => "paper",
-            FingerModelKind::Computed => "computed",
-        }
+    pub fn name(self) -> String {
+        value_name(self)
     }
 }
 

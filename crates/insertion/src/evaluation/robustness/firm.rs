@@ -20,7 +20,7 @@ pub struct FirmWindow {
 }
 
 /// Result of the repeats at both ends of a window.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct FirmResult {
     /// Firm window; `None` if every offset on one side fails in some repeat.
     pub window: Option<FirmWindow>,
@@ -29,9 +29,6 @@ pub struct FirmResult {
 }
 
 impl FirmResult {
-    /// Result without a trial, for a window whose nominal start fails.
-    pub const NONE: FirmResult = FirmResult { window: None, trials: 0 };
-
     /// Returns the firm range, mm; 0 without a firm window.
     pub fn range_mm(&self) -> f64 {
         self.window.map_or(0.0, |window| {

@@ -104,8 +104,8 @@ pub fn over_phases(
         planar(&Geometry::new(finger, &InfillDesign { phase_mm, ..design })?)
     };
     // Collected in the order of the phases, so that the first of several errors is returned.
-    let found: Vec<_> = (0..PHASES).into_par_iter().map(|i| at(i as f64 / PHASES as f64)).collect();
-    found.into_iter().collect()
+    let all: Vec<_> = (0..PHASES).into_par_iter().map(|i| at(i as f64 / PHASES as f64)).collect();
+    all.into_iter().collect()
 }
 
 /// Cache of computed stiffness. The computation is deterministic, so the cache changes no result.
@@ -124,8 +124,8 @@ impl StiffnessCache {
     ) -> Result<FingerStiffness, InputError> {
         // The debug format of a number reads back as the same bits.
         let key = format!("{finger:?} {design:?}");
-        let found = self.0.lock().ok().and_then(|cache| cache.get(&key).copied());
-        if let Some(stiffness) = found {
+        let cached = self.0.lock().ok().and_then(|cache| cache.get(&key).copied());
+        if let Some(stiffness) = cached {
             return Ok(stiffness);
         }
         let stiffness = compute(&Geometry::new(finger, design)?)?;

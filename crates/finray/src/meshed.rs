@@ -126,11 +126,11 @@ pub fn rigid_stiffness<E: Element, const N: usize>(
 ) -> Result<[Matrix3<f64>; N], MeshError> {
     let meshed = MeshedFinger::new(geometry, size)?;
     let condensed = condense(&meshed.mesh, element, &meshed.roles, false)?;
-    let mut found = [Matrix3::zeros(); N];
-    for (matrix, face) in found.iter_mut().zip(faces) {
+    let mut matrices = [Matrix3::zeros(); N];
+    for (matrix, face) in matrices.iter_mut().zip(faces) {
         *matrix = meshed.rigid_motion(&condensed, element, face)?.stiffness;
     }
-    Ok(found)
+    Ok(matrices)
 }
 
 /// Stiffness of a rigid face, and displacements due to its motions.

@@ -44,18 +44,18 @@ pub struct Miss {
 pub fn teach(rig: &dyn Rig, finger: &Finger, stop: &AtomicBool) -> Result<TaughtStart, Box<Miss>> {
     let grasp = Grasp { stop, ..Grasp::of(finger) };
     let grasped = rig.grasp(grasp);
-    let found = first_inserting(&*grasped)?;
-    let moved = Shifted { rig, shift: found };
+    let shift = first_inserting(&*grasped)?;
+    let moved = Shifted { rig, shift };
     let Evaluation { mut window, peak_force_n, .. } =
         tolerance::evaluate_grasp(&moved, grasp, Search::Strides);
     let sum = window.negative_steps + window.positive_steps;
     // The division rounds towards zero.
     let middle = sum.clamp(-OFFSET_LIMIT_STEPS, OFFSET_LIMIT_STEPS) / 2;
-    let inserts = grasped.trial(offset(found + middle)).outcome == Outcome::Inserted;
+    let inserts = grasped.trial(offset(shift + middle)).outcome == Outcome::Inserted;
     let middle = if inserts { middle } else { 0 };
     window.negative_steps -= middle;
     window.positive_steps -= middle;
-    Ok(TaughtStart { shift: found + middle, window, peak_force_n })
+    Ok(TaughtStart { shift: shift + middle, window, peak_force_n })
 }
 
 /// Returns the first start that inserts, searching outward from the start in the task file.

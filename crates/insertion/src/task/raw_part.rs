@@ -147,7 +147,7 @@ fn with_cut_edges(
 ) -> Result<Solid, InputError> {
     let mut cuts: Vec<(Edge, Cut)> = Vec::new();
     for RawEdges { at, chamfer, radius } in edges {
-        let Some(found) = edges::named(at) else {
+        let Some(named) = edges::named(at) else {
             let problem = format!(
                 "unknown edge {at:?}; give a face, as in \"-z\", for its four edges, or two faces, as in \
                  \"+x-z\", for the edge between them"
@@ -159,7 +159,7 @@ fn with_cut_edges(
             (None, Some(radius)) => Cut::Radius(*radius),
             _ => return check.fail(key, "give either chamfer_mm or radius_mm"),
         };
-        for edge in found {
+        for edge in named {
             if edges::cut_at(&cuts, edge).is_some() {
                 return check.fail(key, format!("at = {at:?} repeats an edge"));
             }

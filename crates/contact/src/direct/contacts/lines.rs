@@ -37,7 +37,7 @@ pub(super) fn add_ends(
             turn * relative.rotation,
         );
         let mut simplex = VoronoiSimplex::new();
-        let found = contact_support_map_support_map_with_params(
+        let closest = contact_support_map_support_map_with_params(
             &turned,
             a,
             b,
@@ -45,7 +45,7 @@ pub(super) fn add_ends(
             &mut simplex,
             Some(normal),
         );
-        let GJKResult::ClosestPoints(p1, p2, _) = found else { continue };
+        let GJKResult::ClosestPoints(p1, p2, _) = closest else { continue };
         let p2 = relative * turned.inverse_transform_point(p2);
         let [p1, p2] = [p1 + normal * own, p2 - normal * other];
         let unknown = PackedFeatureId::UNKNOWN;

@@ -54,11 +54,11 @@ pub fn measure(repeats: &Repeats, window: &Window) -> FirmResult {
         || outermost_step(repeats, -window.negative_steps, -1),
         || outermost_step(repeats, window.positive_steps, 1),
     );
-    let found = negative.zip(positive).map(|(negative, positive)| FirmWindow {
+    let window = negative.zip(positive).map(|(negative, positive)| FirmWindow {
         negative_steps: -negative,
         positive_steps: positive,
     });
-    FirmResult { window: found, trials: below + above }
+    FirmResult { window, trials: below + above }
 }
 
 /// Returns the outermost of the grid steps `from` to 0, in the direction `sign`, at which all repeats insert, and the

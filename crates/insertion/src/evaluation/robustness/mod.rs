@@ -101,11 +101,11 @@ fn success_rate(drawn: &[Insertion], confidence: f64, race: Option<&Race>) -> Su
 fn robust_range(drawn: &[Insertion], settings: &RobustSettings) -> RobustRange {
     let window =
         |&(rig, grasp, _): &Insertion| tolerance::evaluate_grasp(rig, grasp, settings.search);
-    let found: Vec<Evaluation> = drawn.par_iter().map(window).collect();
-    let valid = found.iter().filter(|draw| draw.window.nominal != Outcome::Diverged);
+    let windows: Vec<Evaluation> = drawn.par_iter().map(window).collect();
+    let valid = windows.iter().filter(|draw| draw.window.nominal != Outcome::Diverged);
     let ranges_mm: Vec<f64> = valid.map(|draw| draw.window.range_mm()).collect();
-    let diverged = (found.len() - ranges_mm.len()) as u32;
-    let trials = found.iter().map(|draw| draw.trials).sum();
+    let diverged = (windows.len() - ranges_mm.len()) as u32;
+    let trials = windows.iter().map(|draw| draw.trials).sum();
     let mut robust = RobustRange { ranges_mm, diverged, trials, value_mm: None };
     robust.value_mm = statistic(&robust, settings.statistic);
     robust

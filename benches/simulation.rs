@@ -47,7 +47,7 @@ fn rig(task: &Task, engine: EngineKind) -> (Box<dyn Rig>, Finger) {
 
 fn trial(bencher: Bencher, task: &Task, engine: EngineKind) {
     let (rig, finger) = rig(task, engine);
-    bencher.bench(|| rig.hold(Grasp::of(black_box(&finger))).trial(0.0));
+    bencher.bench(|| rig.grasp(Grasp::of(black_box(&finger))).trial(0.0));
 }
 
 #[divan::bench(args = TASK_NAMES, sample_count = 10, sample_size = 1)]

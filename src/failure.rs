@@ -2,7 +2,6 @@
 
 use calibration::experiments::Problems;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
-use finray::FingerError;
 use input::{InputError, Place, Placed, RequestError};
 use insertion::evaluation::template::DesignError;
 use insertion::stiffness::SurrogateError;
@@ -30,12 +29,11 @@ fn place<E: Placed + Error + 'static>(error: &(dyn Error + 'static)) -> Option<P
 }
 
 /// Functions that return the place of an error (file, key and line), one for each type of error that has one.
-const PLACED: [fn(&(dyn Error + 'static)) -> Option<Place>; 7] = [
+const PLACED: [fn(&(dyn Error + 'static)) -> Option<Place>; 6] = [
     place::<InputError>,
     place::<RequestError>,
     place::<Problems>,
     place::<SurrogateError>,
-    place::<FingerError>,
     place::<DesignError>,
     place::<StudyError>,
 ];

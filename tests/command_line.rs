@@ -281,6 +281,8 @@ fn coupled_springs_are_simulated_or_refused() {
     optimize_line(&trial).says(&["outcome"]);
     optimize_line(&format!("{trial} --engine rapier"))
         .fails(2, &["`springs -y`", "springs that couple"]);
+    optimize_line(&format!("{trial} --finger-model computed"))
+        .fails(2, &["usb: finger.coupling: is set, but", "--finger-model paper"]);
     optimize_line(&format!("{TRIAL} --robot ur5e --engine rapier"))
         .fails(2, &["rapier3d", "`servo`", "springs that couple the axes", "--engine direct"]);
 }

@@ -38,7 +38,7 @@ fn phase<'a>(trial: &'a Trial, name: &str) -> &'a PhaseEnd {
 }
 
 fn trial(rig: &EngineRig, finger: &Finger, offset_mm: f64) -> Trial {
-    rig.hold(Grasp::of(finger)).trial(offset_mm * MM)
+    rig.grasp(Grasp::of(finger)).trial(offset_mm * MM)
 }
 
 /// Whole steps through the impacts on the rim hold the key in the grasp; it then turns on the rim and jams.
@@ -111,7 +111,7 @@ fn an_inserted_key_is_deep_upright_and_held() {
 fn far_outside_every_task_fails_and_never_diverges() {
     for file in TASKS {
         let rig = direct(file.name);
-        let grasped = rig.hold(Grasp::of(&finger(3.0, 30.0)));
+        let grasped = rig.grasp(Grasp::of(&finger(3.0, 30.0)));
         for offset_mm in [-12.0, 12.0] {
             let outcome = grasped.trial(offset_mm * MM).outcome;
             let Outcome::Failed(class) = outcome else { panic!("{}: {outcome:?}", file.name) };
@@ -147,7 +147,7 @@ fn a_socket_that_is_too_narrow_is_not_entered() {
 fn the_same_trial_gives_the_same_bits() {
     for name in ["usb", "rj45"] {
         let rig = direct(name);
-        let [first, again] = [(); 2].map(|()| rig.hold(Grasp::of(&finger(2.0, 50.0))));
+        let [first, again] = [(); 2].map(|()| rig.grasp(Grasp::of(&finger(2.0, 50.0))));
         let alone = first.trial(0.4 * MM);
         let other = first.trial(-0.7 * MM);
         assert_eq!(alone, again.trial(0.4 * MM), "{name}");
@@ -200,9 +200,9 @@ fn yaw_turns_the_socket_about_its_middle_and_too_much_of_it_keeps_a_key_out() {
     let soft = finger(1.2, 52.4);
     let at = |yaw_deg: f64| {
         let conditions = Conditions { yaw: yaw_deg * DEG, ..Conditions::NOMINAL };
-        rig.hold(Grasp { conditions, ..Grasp::of(&soft) }).trial(0.3 * MM)
+        rig.grasp(Grasp { conditions, ..Grasp::of(&soft) }).trial(0.3 * MM)
     };
-    assert_eq!(at(0.0), rig.hold(Grasp::of(&soft)).trial(0.3 * MM));
+    assert_eq!(at(0.0), rig.grasp(Grasp::of(&soft)).trial(0.3 * MM));
     let (half, ten) = (at(0.5), at(10.0));
     assert_eq!(half.outcome, Outcome::Inserted);
     assert!(matches!(ten.outcome, Outcome::Failed(_)), "{ten:?}");
@@ -214,7 +214,7 @@ fn a_part_low_in_the_gripper_is_touched_that_much_earlier() {
     let soft = finger(1.2, 52.4);
     let touch = |grasp_low: f64| {
         let conditions = Conditions { grasp_low, ..Conditions::NOMINAL };
-        phase(&rig.hold(Grasp { conditions, ..Grasp::of(&soft) }).trial(0.0), "approach").tip_mm[2]
+        phase(&rig.grasp(Grasp { conditions, ..Grasp::of(&soft) }).trial(0.0), "approach").tip_mm[2]
     };
     let lower = touch(0.0) - touch(0.3 * MM);
     assert!((lower - 0.3).abs() < 0.05, "{lower} mm");

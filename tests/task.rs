@@ -32,7 +32,7 @@ fn changed(text: &str, from: &str, to: &str) -> Result<Task, String> {
 
 /// Nominal trial with the middle one of the measured fingers.
 fn trial(task: &Task) -> Trial {
-    rig(task.clone(), "servo").hold(Grasp::of(&finger(3.0, 30.0))).trial(0.0)
+    rig(task.clone(), "servo").grasp(Grasp::of(&finger(3.0, 30.0))).trial(0.0)
 }
 
 /// Draft of a plug WxHxL, or of a round one DxL.

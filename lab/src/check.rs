@@ -55,7 +55,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         return arguments.windows();
     }
     let mut rows = analytic_checks::run(&|factor| engine.build(factor));
-    rows.extend(analytic_checks::slab::forms(engine.name()));
+    rows.extend(analytic_checks::slab::forms(&engine.name()));
     let failed = rows.iter().filter(|row| !row.passed).count();
     print(&analytic_checks::table(&rows))?;
     verdict("checks", failed, rows.len())

@@ -38,12 +38,13 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let kinds = [arguments.engine, arguments.against];
     let names = kinds.map(EngineKind::name);
+    let names = names.each_ref().map(String::as_str);
     let robot = files::robot(DEFAULT_ROBOT)?;
     let settings = |task: Task| {
         let setting = |engine: EngineKind| {
             let rig = engine.rig(&task, &robot, &FingerSource::Paper.example(&task), 1.0);
             let rig = rig.map_err(Failure::input)?.into();
-            Ok(Setting { name: engine.name().to_owned(), rig, search: Search::Strides })
+            Ok(Setting { name: engine.name(), rig, search: Search::Strides })
         };
         let settings = kinds.into_iter().map(setting).collect::<Result<_, Failure>>()?;
         Ok(TaskSettings { task, settings })

@@ -98,7 +98,8 @@ pub fn surrogate(data: &Source, finger: &PrintedFinger) -> Result<Arc<Model>, Fa
     }
     let measurements = stiffness::parse(&data.text, &data.file).map_err(Failure::input)?;
     let model = surrogate::fit(&measurements, finger).map_err(|error| match error {
-        SurrogateError::Finger(error) => Failure::input(error),
+        // The measurements have been checked: the fault is that of a finger.
+        SurrogateError::Fault(error) => Failure::input(error),
         error => Failure::in_file(&data.file, error),
     })?;
     let model = Arc::new(model);

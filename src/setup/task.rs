@@ -150,7 +150,7 @@ pub(crate) fn nominal_start(
 ) -> Result<(Finger, Trial), Failure> {
     let (finger, shaped) = medium(task);
     let rig = engine.rig(task, robot, &shaped, 1.0).map_err(Failure::input)?;
-    let trial = rig.hold(Grasp { stop, ..Grasp::of(&shaped) }).trial(0.0);
+    let trial = rig.grasp(Grasp { stop, ..Grasp::of(&shaped) }).trial(0.0);
     not_stopped(stop)?;
     Ok((finger, trial))
 }

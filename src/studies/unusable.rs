@@ -29,7 +29,7 @@ pub(crate) fn check(
         evaluator.specimen(template, &nearest.design, nearest.stiffness).map_err(Failure::input)?;
     let taught = nearest.on(task).and_then(|found| found.taught);
     let rig = evaluator.rig(&specimen, taught, 1.0).map_err(Failure::input)?;
-    let trial = rig.hold(Grasp { stop, ..Grasp::of(&specimen.finger) }).trial(0.0);
+    let trial = rig.grasp(Grasp { stop, ..Grasp::of(&specimen.finger) }).trial(0.0);
     not_stopped(stop)?;
     let class = outcome(trial.outcome);
     let phase =

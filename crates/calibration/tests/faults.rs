@@ -15,7 +15,7 @@ use insertion::outcome::Outcome;
 use insertion::robot::Robot;
 use insertion::space::Design;
 use insertion::trial::engine::EngineKind;
-use insertion::trial::{Course, Grasp, NEVER, Probe};
+use insertion::trial::{Command, Grasp, NEVER, Probe};
 use insertion::{stiffness, surrogate};
 use rayon::prelude::*;
 
@@ -111,11 +111,12 @@ fn recorded(evaluator: &Evaluator, cell: u64) -> Vec<Recorded> {
         for start in [None].into_iter().chain(starts.map(Some)) {
             let (outcome, samples) = match start {
                 None => {
-                    let probe = rig.follow(grasp, Course::Probe(Probe::DEFAULT), EVERY_S).remove(0);
+                    let probe =
+                        rig.follow(grasp, Command::Probe(Probe::DEFAULT), EVERY_S).remove(0);
                     (None, probe.1)
                 }
                 Some(mm) => {
-                    let (trial, samples) = rig.hold(grasp).logged(mm * MM, EVERY_S);
+                    let (trial, samples) = rig.grasp(grasp).logged(mm * MM, EVERY_S);
                     (Some(trial.outcome), samples)
                 }
             };

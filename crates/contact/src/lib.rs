@@ -24,11 +24,6 @@ pub trait Engine: Send + Sync {
         Ok(())
     }
 
-    /// Returns whether face contacts have torsional friction ([`scene::Friction::torsion`]).
-    fn has_torsional_friction(&self) -> bool {
-        true
-    }
-
     /// Creates the simulation, at time zero, of a scene that the engine [supports](Engine::supports).
     fn world(&self, scene: &Scene) -> Box<dyn World>;
 

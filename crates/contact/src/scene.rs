@@ -319,16 +319,16 @@ impl Scene {
             let before: usize = self.bodies[..body.0].iter().map(|body| body.geoms.len()).sum();
             (before..).zip(&self.bodies[body.0].geoms)
         };
-        let mut found = Vec::new();
+        let mut pairs = Vec::new();
         for (bodies, pair) in self.contacts.iter().enumerate() {
             for (first, own) in numbered(pair.first) {
                 for (second, other) in numbered(pair.second) {
                     let friction = pair.friction.of_geoms([own.friction, other.friction]);
-                    found.push(GeomPair { bodies, first, second, friction });
+                    pairs.push(GeomPair { bodies, first, second, friction });
                 }
             }
         }
-        found
+        pairs
     }
 }
 

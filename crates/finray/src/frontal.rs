@@ -7,7 +7,7 @@ use super::mesh::MeshError;
 const PANEL: usize = 4;
 /// Smallest pivot, relative to its value before the elimination; a smaller one is a rounding error, and the node can
 /// move without a force.
-const SMALLEST_PIVOT: f64 = 1e-11;
+const MIN_PIVOT: f64 = 1e-11;
 
 /// Stiffness matrix of some nodes of a part of a mesh.
 #[derive(Debug, Clone)]
@@ -65,7 +65,7 @@ impl Frontal {
     /// If one of the first nodes can move without a force.
     pub fn eliminate(&mut self) -> Result<(), MeshError> {
         let (size, end) = (self.size(), self.eliminated * self.dofs);
-        let least: Vec<f64> = (0..end).map(|i| SMALLEST_PIVOT * self.at(i, i)).collect();
+        let least: Vec<f64> = (0..end).map(|i| MIN_PIVOT * self.at(i, i)).collect();
         let mut panel = vec![0.0; PANEL * size];
         for start in (0..end).step_by(PANEL) {
             let width = PANEL.min(end - start);

@@ -1,7 +1,6 @@
 //! The checked profile of a printed finger: outline, skin and ribs.
 
-use super::FingerError;
-use super::infill::{InfillDesign, NARROWEST_VOID, RibLines};
+use super::infill::{InfillDesign, MIN_VOID_WIDTH, RibLines};
 use super::polygon::{self, HalfPlane, Ring, without_repeats};
 use crate::holes::{Block, Holes};
 use crate::outline::{Outline, ring};
@@ -27,14 +26,14 @@ pub struct Geometry {
 }
 
 /// Distance below which two corners of an opening are one, m.
-const NEAREST_CORNERS: f64 = 0.002 * MM;
+const MIN_CORNER_DISTANCE: f64 = 0.002 * MM;
 
 impl Geometry {
     /// Creates the checked profile of a finger with an infill.
     ///
     /// # Errors
     /// If the parts of the finger do not fit together; the message names file and key.
-    pub fn new(finger: &PrintedFinger, design: &InfillDesign) -> Result<Self, FingerError> {
+    pub fn new(finger: &PrintedFinger, design: &InfillDesign) -> Result<Self, InputError> {
         let lines = RibLines::new(finger, design);
         let check = Check { file: &finger.file };
         check_outline(check, &finger.outline)?;
@@ -91,8 +90,8 @@ fn gaps(inside: &Ring, finger: &PrintedFinger, lines: &RibLines) -> Vec<(i64, Ve
         let before = HalfPlane { normal: -lines.across, offset: half - lines.offset(n + 1) };
         let pieces = after.cut(inside).into_iter().flat_map(|piece| before.cut(&piece));
         let mut voids: Vec<Ring> =
-            pieces.map(|piece| without_repeats(&piece, NEAREST_CORNERS)).collect();
-        voids.retain(|void| polygon::area(void) > NARROWEST_VOID * polygon::perimeter(void) / 2.0);
+            pieces.map(|piece| without_repeats(&piece, MIN_CORNER_DISTANCE)).collect();
+        voids.retain(|void| polygon::area(void) > MIN_VOID_WIDTH * polygon::perimeter(void) / 2.0);
         voids.iter_mut().for_each(|void| void.reverse());
         (n, voids)
     };
@@ -151,7 +150,7 @@ fn check_ribs(check: Check<'_>, finger: &PrintedFinger, design: &InfillDesign) -
     if !phase_mm.is_none_or(f64::is_finite) {
         return check.fail("phase_mm", "must be a finite number");
     }
-    let gap = smallest_gap.max(NARROWEST_VOID);
+    let gap = smallest_gap.max(MIN_VOID_WIDTH);
     if pitch - ribs.thickness < gap {
         let most = ribs.line_spacing / (ribs.thickness + gap) / PERCENT;
         let problem = format!(

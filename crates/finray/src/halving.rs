@@ -51,7 +51,7 @@ struct Halving {
 /// Directions along which a set of triangles may be halved.
 const DIRECTIONS: [[f64; 2]; 4] = [[1.0, 0.0], [0.0, 1.0], [0.7, 0.7], [0.7, -0.7]];
 /// Fractions of the triangles that may lie before a cut.
-const SHARES: [f64; 3] = [0.5, 0.4, 0.6];
+const CUT_FRACTIONS: [f64; 3] = [0.5, 0.4, 0.6];
 /// Number of triangles below which only the cut into halves along x or y is tried.
 const FEW: usize = 30;
 
@@ -93,7 +93,7 @@ impl Halving {
 
     /// Returns the cut across which the fewest corners are shared.
     fn best(&mut self, order: &mut [u32]) -> Cut {
-        let firsts = SHARES.map(|share| (order.len() as f64 * share) as usize);
+        let firsts = CUT_FRACTIONS.map(|share| (order.len() as f64 * share) as usize);
         let cuts =
             (0..DIRECTIONS.len()).flat_map(|direction| firsts.map(|first| (direction, first)));
         let shared = |&cut: &Cut| {

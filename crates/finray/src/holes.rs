@@ -71,9 +71,9 @@ const FLAT: f64 = 0.01 * MM;
 /// Thickness of the thinnest wall beside a hole, in widths of a printed line.
 const WALL_LINES: f64 = 3.0;
 /// Smallest diameter that prints open, m.
-const SMALLEST: f64 = 1.0 * MM;
+const MIN_DIAMETER: f64 = 1.0 * MM;
 /// Largest number of holes of a row.
-const MOST: u32 = 20;
+const MAX_COUNT: u32 = 20;
 /// Tolerance of lengths for rounding errors, m.
 const EPSILON: f64 = 1e-9;
 
@@ -214,11 +214,11 @@ impl RawHoles {
     pub fn checked(self, check: Check<'_>) -> Result<Holes, InputError> {
         let length = |key, value| length(check, key, value);
         let RawHoles { axis, row, count, .. } = self;
-        let (fits, must) = ((1..=MOST).contains(&count), format!("be from 1 to {MOST}"));
+        let (fits, must) = ((1..=MAX_COUNT).contains(&count), format!("be from 1 to {MAX_COUNT}"));
         check.require("holes.count", f64::from(count), fits, &must)?;
         let diameter = length("holes.diameter_mm", self.diameter_mm)?;
-        let must = format!("be at least {}: smaller holes close in print", SMALLEST / MM);
-        check.require("holes.diameter_mm", self.diameter_mm, diameter >= SMALLEST, &must)?;
+        let must = format!("be at least {}: smaller holes close in print", MIN_DIAMETER / MM);
+        check.require("holes.diameter_mm", self.diameter_mm, diameter >= MIN_DIAMETER, &must)?;
         let block = |RawBlock { length_mm, width_mm, overlap_mm }| {
             Ok(Block {
                 length: length("holes.block.length_mm", length_mm)?,

@@ -16,7 +16,7 @@ pub struct InfillDesign {
 }
 
 /// Width of the narrowest opening that remains open in a print, as its area over half its perimeter, m.
-pub(super) const NARROWEST_VOID: f64 = 0.05 * MM;
+pub(super) const MIN_VOID_WIDTH: f64 = 0.05 * MM;
 
 /// Centre lines of the ribs: straight lines at `first + n pitch` along `across`.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -4,7 +4,6 @@
 //! models use quadratic triangles on the exact profile. The base is clamped, and the pad (or the pad and a section of
 //! the roof) moves as a rigid body.
 
-use super::FingerError;
 use super::elasticity::{PlaneStress, Slab};
 use super::geometry::Geometry;
 use super::infill::{InfillDesign, RibLines};
@@ -13,6 +12,7 @@ use super::meshed::{RigidFace, rigid_stiffness};
 use super::plate::MindlinPlate;
 use super::stiffness::{CrossStiffness, PlanarStiffness};
 use crate::printed::PrintedFinger;
+use input::InputError;
 use input::units::{MM, N_PER_MM};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -44,7 +44,7 @@ pub struct FingerStiffness {
 /// # Errors
 /// If the profile cannot be meshed or is not connected to its base, or its stiffness is implausible
 /// for a finger, for example because a length or the modulus is given in a wrong unit.
-pub fn compute(geometry: &Geometry) -> Result<FingerStiffness, FingerError> {
+pub fn compute(geometry: &Geometry) -> Result<FingerStiffness, InputError> {
     let [pad, pad_and_roof] = planar(geometry)?;
     Ok(FingerStiffness { pad, pad_and_roof, cross: cross(geometry)? })
 }
@@ -53,8 +53,8 @@ pub fn compute(geometry: &Geometry) -> Result<FingerStiffness, FingerError> {
 ///
 /// # Errors
 /// See [`compute`].
-pub fn planar(geometry: &Geometry) -> Result<[PlanarStiffness; 2], FingerError> {
-    let fails = |problem| FingerError::mesh(geometry, problem);
+pub fn planar(geometry: &Geometry) -> Result<[PlanarStiffness; 2], InputError> {
+    let fails = |problem: MeshError| geometry.finger.fault(problem);
     let element = PlaneStress(Slab::of(&geometry.finger));
     let held = rigid_stiffness(geometry, &element, SIZE, [RigidFace::Pad, RigidFace::PadAndRoof])
         .map_err(fails)?;
@@ -68,7 +68,7 @@ pub fn planar(geometry: &Geometry) -> Result<[PlanarStiffness; 2], FingerError> 
              finger has 0.05 to 100 N/mm; check that lengths are in mm and material.modulus_gpa in \
              GPa (PETG has 2)"
         );
-        return Err(FingerError::finger(&geometry.finger, problem));
+        return Err(geometry.finger.fault(problem));
     }
     Ok([pad, stiffness(held[1])?])
 }
@@ -77,8 +77,8 @@ pub fn planar(geometry: &Geometry) -> Result<[PlanarStiffness; 2], FingerError> 
 ///
 /// # Errors
 /// If the profile cannot be meshed or is not connected to its base.
-pub fn cross(geometry: &Geometry) -> Result<CrossStiffness, FingerError> {
-    let fails = |problem| FingerError::mesh(geometry, problem);
+pub fn cross(geometry: &Geometry) -> Result<CrossStiffness, InputError> {
+    let fails = |problem: MeshError| geometry.finger.fault(problem);
     let element = MindlinPlate(Slab::of(&geometry.finger));
     let [held] =
         rigid_stiffness(geometry, &element, CROSS_SIZE, [RigidFace::Pad]).map_err(fails)?;
@@ -94,7 +94,7 @@ pub fn over_phases(
     finger: &PrintedFinger,
     density_percent: f64,
     direction_deg: f64,
-) -> Result<Vec<[PlanarStiffness; 2]>, FingerError> {
+) -> Result<Vec<[PlanarStiffness; 2]>, InputError> {
     let design = InfillDesign { density_percent, direction_deg, phase_mm: None };
     // A density of 0 has no finite pitch: the first geometry returns the error.
     let pitch = RibLines::new(finger, &design).pitch;
@@ -104,8 +104,8 @@ pub fn over_phases(
         planar(&Geometry::new(finger, &InfillDesign { phase_mm, ..design })?)
     };
     // Collected in the order of the phases, so that the first of several errors is returned.
-    let found: Vec<_> = (0..PHASES).into_par_iter().map(|i| at(i as f64 / PHASES as f64)).collect();
-    found.into_iter().collect()
+    let all: Vec<_> = (0..PHASES).into_par_iter().map(|i| at(i as f64 / PHASES as f64)).collect();
+    all.into_iter().collect()
 }
 
 /// Cache of computed stiffness. The computation is deterministic, so the cache changes no result.
@@ -121,11 +121,11 @@ impl StiffnessCache {
         &self,
         finger: &PrintedFinger,
         design: &InfillDesign,
-    ) -> Result<FingerStiffness, FingerError> {
+    ) -> Result<FingerStiffness, InputError> {
         // The debug format of a number reads back as the same bits.
         let key = format!("{finger:?} {design:?}");
-        let found = self.0.lock().ok().and_then(|cache| cache.get(&key).copied());
-        if let Some(stiffness) = found {
+        let cached = self.0.lock().ok().and_then(|cache| cache.get(&key).copied());
+        if let Some(stiffness) = cached {
             return Ok(stiffness);
         }
         let stiffness = compute(&Geometry::new(finger, design)?)?;

@@ -9,11 +9,11 @@ use spade::{
 use std::collections::BTreeSet;
 
 /// Smallest angle of a triangle, degrees; above 30 the refinement may not terminate.
-const SMALLEST_ANGLE_DEG: f64 = 25.0;
+const MIN_ANGLE_DEG: f64 = 25.0;
 /// Largest number of vertices that the refinement adds; a printable profile needs fewer.
 const MAX_VERTICES: usize = 100_000;
 /// Fraction of the requested area below which a triangle is not divided to improve its angles.
-const SMALLEST_SHARE: f64 = 1e-3;
+const MIN_AREA_RATIO: f64 = 1e-3;
 
 /// Straight-sided triangles with nodes at their corners and mid-sides.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,20 +24,23 @@ pub struct Mesh {
     pub triangles: Vec<[u32; 6]>,
 }
 
-/// Reason why a profile has no mesh, or its mesh no stiffness matrix; messages complete "cannot be meshed: ".
+/// Reason why a profile has no mesh, or its mesh no stiffness matrix.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum MeshError {
     /// Rings that cross or touch.
-    #[error("its edges cross or touch one another")]
+    #[error("the profile cannot be meshed: its edges cross or touch one another")]
     Crossing,
     /// Walls or gaps that need too many triangles.
-    #[error("its mesh needs more than {MAX_VERTICES} vertices: a wall or gap is too thin")]
+    #[error(
+        "the profile cannot be meshed: it needs more than {MAX_VERTICES} vertices: a wall or gap is \
+         too thin"
+    )]
     TooFine,
     /// Nodes that are not connected to the base.
     #[error("a part of the finger is not connected to its base")]
     Disconnected,
     /// A stiffness matrix that is not positive definite.
-    #[error("its stiffness matrix is not positive definite")]
+    #[error("the stiffness matrix of the finger is not positive definite")]
     NotPositiveDefinite,
 }
 
@@ -50,9 +53,9 @@ impl Mesh {
         // Equilateral triangle.
         let area = 0.433 * size * size;
         let parameters = RefinementParameters::new()
-            .with_angle_limit(AngleLimit::from_deg(SMALLEST_ANGLE_DEG))
+            .with_angle_limit(AngleLimit::from_deg(MIN_ANGLE_DEG))
             .with_max_allowed_area(area)
-            .with_min_required_area(area * SMALLEST_SHARE)
+            .with_min_required_area(area * MIN_AREA_RATIO)
             .with_max_additional_vertices(MAX_VERTICES);
         Mesh::fill(outer, holes, parameters)
     }

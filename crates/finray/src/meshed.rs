@@ -11,7 +11,7 @@ use nalgebra::{DMatrix, Matrix3, Point2};
 /// Distance from a line within which a node counts as on it, m.
 const ON_LINE: f64 = 1e-6 * MM;
 /// Size of the triangles at the ends of a rigid face, where stress is singular, relative to the usual size.
-const FINEST: f64 = 0.3;
+const MIN_SIZE_RATIO: f64 = 0.3;
 
 /// Mesh of a finger without its clamped part, which does not deform.
 pub struct MeshedFinger {
@@ -126,11 +126,11 @@ pub fn rigid_stiffness<E: Element, const N: usize>(
 ) -> Result<[Matrix3<f64>; N], MeshError> {
     let meshed = MeshedFinger::new(geometry, size)?;
     let condensed = condense(&meshed.mesh, element, &meshed.roles, false)?;
-    let mut found = [Matrix3::zeros(); N];
-    for (matrix, face) in found.iter_mut().zip(faces) {
+    let mut matrices = [Matrix3::zeros(); N];
+    for (matrix, face) in matrices.iter_mut().zip(faces) {
         *matrix = meshed.rigid_motion(&condensed, element, face)?.stiffness;
     }
-    Ok(found)
+    Ok(matrices)
 }
 
 /// Stiffness of a rigid face, and displacements due to its motions.
@@ -146,7 +146,7 @@ fn graded(ring: &Ring, corners: &[Point2<f64>], size: f64) -> Ring {
     let near = |p: Point2<f64>| corners.iter().any(|corner| (p - corner).norm() < ON_LINE);
     let steps = |length: f64| -> Vec<f64> {
         let reach = size.min(length / 2.0);
-        let steps = std::iter::successors(Some(FINEST * size), |step| Some(2.0 * step));
+        let steps = std::iter::successors(Some(MIN_SIZE_RATIO * size), |step| Some(2.0 * step));
         steps.take_while(|step| *step < reach).collect()
     };
     let mut finer = Ring::new();

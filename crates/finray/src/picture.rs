@@ -1,6 +1,5 @@
 //! A picture of a finger that bends under a load on its pad.
 
-use super::FingerError;
 use super::condense::condense;
 use super::elasticity::{PlaneStress, Slab};
 use super::geometry::Geometry;
@@ -10,6 +9,7 @@ use super::meshed::{MeshedFinger, RigidFace};
 use super::stiffness::PlanarStiffness;
 use crate::outline::Outline;
 use drawing::{Drawing, Font, Style, View};
+use input::InputError;
 use input::units::MM;
 use nalgebra::{Point2, Vector2, Vector3};
 
@@ -18,7 +18,7 @@ const SCALE: f64 = 12.0;
 /// Margins around the finger, mm: left, top, right, bottom.
 const MARGIN: [f64; 4] = [9.0, 12.0, 4.0, 11.0];
 /// Largest displacement in the picture, mm.
-const LONGEST: f64 = 5.0;
+const MAX_DISPLACEMENT: f64 = 5.0;
 /// Length of the scale bar, mm.
 const BAR: f64 = 10.0;
 
@@ -27,9 +27,8 @@ const BAR: f64 = 10.0;
 ///
 /// # Errors
 /// If the finger's stiffness cannot be computed.
-pub fn svg(geometry: &Geometry, force: [f64; 2]) -> Result<String, FingerError> {
-    let bent =
-        BentFinger::new(geometry, force).map_err(|error| FingerError::mesh(geometry, error))?;
+pub fn svg(geometry: &Geometry, force: [f64; 2]) -> Result<String, InputError> {
+    let bent = BentFinger::new(geometry, force).map_err(|error| geometry.finger.fault(error))?;
     let [left, top, right, bottom] = MARGIN.map(|mm| mm * SCALE);
     let view = View { origin: Point2::new(left, top), scale: SCALE / MM };
     let Outline { length, width, clamped, .. } = geometry.finger.outline;
@@ -78,7 +77,7 @@ impl BentFinger {
         let motion = stiffness.compliance * Vector3::new(y, z, 0.0);
         let displacements = condensed.expand(&(&held.displacements * motion));
         let largest = displacements.iter().fold(0.0, |most: f64, d| most.max(d.abs()));
-        let exaggeration = round_down(LONGEST * MM / largest);
+        let exaggeration = round_down(MAX_DISPLACEMENT * MM / largest);
         Ok(BentFinger { meshed, displacements, exaggeration, motion })
     }
 

@@ -3,7 +3,7 @@
 use crate::holes::{Holes, RawHoles};
 use crate::outline::Outline;
 use input::units::{DEG, MM};
-use input::{Check, Document, InputError, syntax};
+use input::{Check, Document, InputError, Place, syntax};
 use nalgebra::Point2;
 use serde::Deserialize;
 
@@ -130,6 +130,11 @@ impl PrintedFinger {
         PrintedFinger::checked(table.try_into().map_err(|error| syntax(file, "", &error))?, file)
     }
 
+    /// Returns an error about the finger as a whole, not about one of its values.
+    pub fn fault(&self, problem: impl ToString) -> InputError {
+        Place::file(&self.file).fault(problem.to_string())
+    }
+
     fn checked(raw: RawFinger, file: &str) -> Result<Self, InputError> {
         let check = Check { file };
         let length = |key, value| length(check, key, value);
@@ -171,22 +176,22 @@ impl PrintedFinger {
 }
 
 /// Largest length, mm; above it the unit is wrong.
-const LONGEST_MM: f64 = 500.0;
+const MAX_LENGTH_MM: f64 = 500.0;
 /// Accepted moduli, GPa: silicone has about 0.001, steel 210.
 const MODULI_GPA: std::ops::RangeInclusive<f64> = 1e-4..=500.0;
 /// Largest angle, degrees; above it there is no notch.
-const STEEPEST_DEG: f64 = 60.0;
+const MAX_ANGLE_DEG: f64 = 60.0;
 
 /// Checks a length, mm; returns it in m.
 pub(super) fn length(check: Check<'_>, key: &str, value: f64) -> Result<f64, InputError> {
-    let fits = check.positive(key, value)? <= LONGEST_MM;
-    let must = format!("be at most {LONGEST_MM} (millimetres)");
+    let fits = check.positive(key, value)? <= MAX_LENGTH_MM;
+    let must = format!("be at most {MAX_LENGTH_MM} (millimetres)");
     Ok(check.require(key, value, fits, &must)? * MM)
 }
 
 fn angle(check: Check<'_>, key: &str, value: f64) -> Result<f64, InputError> {
-    let fits = check.not_negative(key, value)? <= STEEPEST_DEG;
-    let must = format!("be from 0 to {STEEPEST_DEG} (degrees)");
+    let fits = check.not_negative(key, value)? <= MAX_ANGLE_DEG;
+    let must = format!("be from 0 to {MAX_ANGLE_DEG} (degrees)");
     Ok(check.require(key, value, fits, &must)? * DEG)
 }
 

@@ -22,3 +22,8 @@ pub mod stiffness;
 pub mod surrogate;
 pub mod task;
 pub mod trial;
+
+/// Returns the name of an option's value on the command line.
+pub fn value_name(of: impl clap::ValueEnum) -> String {
+    of.to_possible_value().map_or(String::new(), |value| value.get_name().to_owned())
+}

@@ -1,13 +1,12 @@
 //! Measured stiffness of fingers: CSV file and its checks.
 
 use ask_tell::statistics::median;
-use finray::FingerError;
 use input::shipped::STIFFNESS;
 use input::units::N_PER_MM;
 use input::{InputError, Place, Placed, check_quotes};
 use parameters::numbers;
 
-/// Direction of a finger's stiffness.
+/// Direction of a finger's stiffness; as a number, its index in [`Axis::ALL`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Axis {
     /// z, the direction of assembly: loads the ribs along their length.
@@ -22,10 +21,7 @@ impl Axis {
 
     /// Returns a short name for tables and plots.
     pub fn label(self) -> &'static str {
-        match self {
-            Axis::Assembly => "assembly (z)",
-            Axis::Compliance => "compliance (y)",
-        }
+        ["assembly (z)", "compliance (y)"][self as usize]
     }
 }
 
@@ -62,10 +58,7 @@ pub struct Measurement {
 impl Measurement {
     /// Returns the stiffness along one axis, N/m.
     pub fn stiffness(&self, axis: Axis) -> f64 {
-        match axis {
-            Axis::Assembly => self.assembly,
-            Axis::Compliance => self.compliance,
-        }
+        [self.assembly, self.compliance][axis as usize]
     }
 
     /// Returns density and direction of the infill.
@@ -77,7 +70,8 @@ impl Measurement {
 /// Error of measured stiffnesses.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SurrogateError {
-    /// Invalid CSV, a header other than [`HEADER`], an invalid value, or a column in another unit.
+    /// Invalid CSV, a header other than [`HEADER`], an invalid value, a column in another unit, or a measured finger
+    /// whose stiffness cannot be computed.
     #[error(transparent)]
     Fault(#[from] InputError),
     /// No measured design.
@@ -89,9 +83,6 @@ pub enum SurrogateError {
          nearly alike"
     )]
     TooMany(usize),
-    /// A measured finger whose stiffness cannot be computed.
-    #[error(transparent)]
-    Finger(#[from] FingerError),
     /// No model could be fitted along the axis of this [`Axis::label`].
     #[error(
         "no stiffness model in the {0} direction can be fitted: the designs must differ in density \
@@ -104,7 +95,6 @@ impl Placed for SurrogateError {
     fn place(&self) -> Place {
         match self {
             SurrogateError::Fault(fault) => fault.place(),
-            SurrogateError::Finger(error) => error.place(),
             _ => Place::default(),
         }
     }

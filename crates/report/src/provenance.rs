@@ -138,7 +138,7 @@ fn provenance(record: &StudyRecord) -> Markup {
     add("study", config.name());
     add("task", config.task_name());
     add("robot", config.robot.clone());
-    add("finger model", config.finger_model.name().to_owned());
+    add("finger model", config.finger_model.name());
     add("optimizer", config.method());
     add("objective", config.objective.to_string());
     add("seed", config.seed.to_string());

@@ -43,7 +43,7 @@ pub fn t12(engine: &dyn Engine) -> Vec<CheckRow> {
         moment("T12", quantity, FRICTION * LOAD * beside, case.hold(engine))
     };
     let mut rows = BESIDE.map(drawn).to_vec();
-    if engine.has_torsional_friction() {
+    if !engine.version().starts_with("rapier") {
         rows.extend([0.0, DRAWN].into_iter().flat_map(|speed| turning(engine, speed)));
     }
     rows

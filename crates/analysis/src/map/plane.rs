@@ -57,11 +57,11 @@ impl<'a> Plane<'a> {
 
     /// Returns the outcome of the trial with these errors, which are within [`LIMIT`].
     pub(super) fn outcome(&self, [y, other]: Node) -> Outcome {
-        let hold = || {
+        let grasp = || {
             let conditions = Draw::with([(self.axes.second().1, value(other))]).conditions;
-            self.rig.hold(Grasp { conditions, ..self.grasp })
+            self.rig.grasp(Grasp { conditions, ..self.grasp })
         };
-        let grasped = self.grasped[(other + LIMIT[1]) as usize].get_or_init(hold);
+        let grasped = self.grasped[(other + LIMIT[1]) as usize].get_or_init(grasp);
         grasped.trial(value(y) * MM).outcome
     }
 }

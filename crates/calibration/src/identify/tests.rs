@@ -13,7 +13,7 @@ use insertion::robot::Robot;
 use insertion::space::Design;
 use insertion::task::Task;
 use insertion::trial::engine::EngineKind;
-use insertion::trial::{Course, Grasp, Tcp};
+use insertion::trial::{Command, Grasp, Tcp};
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 
 fn usb() -> Task {
@@ -253,13 +253,13 @@ fn an_attempt_along_its_own_path_is_the_same_attempt() {
     let finger = Finger::new(2.0 * N_PER_MM, 10.0 * N_PER_MM).with_model(&task.finger, 0.0);
     let rig = EngineKind::Direct.rig(&task, &robot, &finger, 1.0).unwrap();
     for offset in [0.0, 8.0 * MM] {
-        let (trial, samples) = rig.hold(Grasp::of(&finger)).run(offset, Some(STEP_S), 0.0);
+        let (trial, samples) = rig.grasp(Grasp::of(&finger)).run(offset, Some(STEP_S), 0.0);
         let measured = Curves::of_samples(&samples, 0.0);
         let trajectory = measured.trajectory().unwrap();
         let push = trajectory.push_start();
         assert!(push > 0.1 && push < trajectory.duration(), "{push}");
         let all = [&trajectory];
-        let mut followed = rig.follow(Grasp::of(&finger), Course::Trajectories(&all), STEP_S);
+        let mut followed = rig.follow(Grasp::of(&finger), Command::Trajectories(&all), STEP_S);
         let (again, samples) = followed.remove(0);
         assert_eq!(again.outcome, trial.outcome);
         let replayed = Curves::of_samples(&samples, 0.0);

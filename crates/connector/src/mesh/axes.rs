@@ -1,7 +1,7 @@
 //! Unit and axes of mesh files.
 
-use clap::ValueEnum;
 use input::units::MM;
+pub use insertion::value_name as value;
 
 /// Unit of length of a mesh file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
@@ -57,9 +57,4 @@ pub enum Jaws {
     Y,
     /// Along z
     Z,
-}
-
-/// Returns the name of an option's value on the command line.
-pub fn value(of: impl ValueEnum) -> String {
-    of.to_possible_value().map_or(String::new(), |value| value.get_name().to_owned())
 }

@@ -22,15 +22,15 @@ use std::sync::Arc;
 /// (in metres it misses the contact of two edges of 1 mm that cross at less than a degree).
 const MILLIMETRES: f64 = 1e3;
 /// Distance in front of a surface at which a point in a neighbouring geom shows that the surface is covered, m.
-const COVER: f64 = 20e-6;
+const COVER_DISTANCE: f64 = 20e-6;
 /// Tolerance of that test, m: less than any gap between parts.
-const SEAM: f64 = 2e-6;
+const COVER_TOLERANCE: f64 = 2e-6;
 /// Relative displacement of two geoms up to which their contact points are reused, m: a twentieth of the default
 /// prediction distance.
-const REUSE: f64 = 10e-6;
+const REUSE_DISTANCE: f64 = 10e-6;
 /// Relative displacement, divided by the radius, up to which the contact points of round geoms are reused: the rotation
 /// of the normal, rad.
-const ROUND_REUSE: f64 = 2e-3;
+const REUSE_ANGLE: f64 = 2e-3;
 
 /// Number of geom pairs of two bodies above which only contacts whose gap may close within a step are predicted:
 /// an imported surface has hundreds of facets within the prediction distance, and all would be tested in each step.
@@ -127,14 +127,14 @@ impl Detector {
         }
         for i in 0..solids.len() {
             let (own, (range, tree)) = (&solids[i], &bodies[solids[i].body]);
-            let aabb = own.aabb.loosened(2.0 * COVER);
+            let aabb = own.aabb.loosened(2.0 * COVER_DISTANCE);
             let found = tree.intersect_aabb(&aabb);
             let mut near: Vec<_> = found.map(|leaf| range.start + leaf as usize).collect();
-            near.retain(|&j| j != i && !own.apart(&solids[j], COVER));
+            near.retain(|&j| j != i && !own.apart(&solids[j], COVER_DISTANCE));
             near.sort_unstable();
-            let neighbour =
-                |solid: usize| Neighbour { solid, aabb: solids[solid].aabb.loosened(4.0 * SEAM) };
-            solids[i].neighbours = near.into_iter().map(neighbour).collect();
+            let enclosed = |j: usize| solids[j].aabb.loosened(4.0 * COVER_TOLERANCE);
+            let near = near.into_iter().map(|j| Neighbour { solid: j, aabb: enclosed(j) });
+            solids[i].neighbours = near.collect();
         }
         let mut from = 0;
         let list = |pair: (usize, &ContactPair)| {
@@ -149,8 +149,8 @@ impl Detector {
     }
 
     /// Detects the contacts at the bodies' poses and those predicted for a step of `step_s`, s.
-    pub fn detect(&mut self, bodies: &[MovingBody], step_s: f64, found: &mut Vec<Touch>) {
-        found.clear();
+    pub fn detect(&mut self, bodies: &[MovingBody], step_s: f64, touches: &mut Vec<Touch>) {
+        touches.clear();
         for list in &mut self.lists {
             let [first, second] =
                 [list.bodies.first, list.bodies.second].map(|body| bodies[body.0].pose);
@@ -173,10 +173,10 @@ impl Detector {
                     continue;
                 }
                 let Some(candidate) = list.candidates.get_mut(&pair.number) else { continue };
-                candidate.find(pair.number, bodies, &self.solids, prediction, found);
+                candidate.find(pair.number, bodies, &self.solids, prediction, touches);
             }
         }
-        patches::join(found);
+        patches::join(touches);
     }
 }
 
@@ -250,22 +250,22 @@ impl Solid {
     /// Returns whether a neighbour covers a point of the surface; point, m, and outward normal are in parry's frame of
     /// the shape.
     fn covered(&self, place: &Vector3<f64>, outward: &Vector3<f64>, solids: &[Solid]) -> bool {
-        let outside = self.pose * Point3::from(place + outward * COVER);
+        let outside = self.pose * Point3::from(place + outward * COVER_DISTANCE);
         self.neighbours.iter().any(|&Neighbour { solid: j, aabb }| {
             if !aabb.contains_local_point(outside.coords.into()) {
                 return false;
             }
             let inside = solids[j].frame.inverse_transform_point(&outside).coords.abs();
-            if (0..3).any(|i| inside[i] > solids[j].half[i] + 2.0 * SEAM) {
+            if (0..3).any(|i| inside[i] > solids[j].half[i] + 2.0 * COVER_TOLERANCE) {
                 return false;
             }
             let local = solids[j].pose.inverse_transform_point(&outside).coords * MILLIMETRES;
-            solids[j].distance(&local) < SEAM * MILLIMETRES
+            solids[j].distance(&local) < COVER_TOLERANCE * MILLIMETRES
         })
     }
 
-    /// Returns the distance of a point in parry's frame from the shape, mm; 0 inside. Above [`SEAM`] it is a lower
-    /// bound.
+    /// Returns the distance of a point in parry's frame from the shape, mm; 0 inside. Above [`COVER_TOLERANCE`] it is a
+    /// lower bound.
     fn distance(&self, place: &Vector3<f64>) -> f64 {
         if let Some((core, radius)) = &self.round {
             let beside = place.abs() - Vector3::from(core.half_extents);
@@ -274,7 +274,7 @@ impl Solid {
         if !self.faces.is_empty() {
             let beyond = self.faces.iter().map(|(face, far)| face.dot(place) - far);
             let beyond = beyond.fold(f64::NEG_INFINITY, f64::max);
-            if beyond <= 0.0 || beyond >= SEAM * MILLIMETRES {
+            if beyond <= 0.0 || beyond >= COVER_TOLERANCE * MILLIMETRES {
                 return beyond.max(0.0);
             }
         }
@@ -317,7 +317,7 @@ impl Candidate {
         bodies: &[MovingBody],
         solids: &[Solid],
         prediction: f64,
-        found: &mut Vec<Touch>,
+        touches: &mut Vec<Touch>,
     ) {
         let [first, second] = [self.pair.first, self.pair.second].map(|solid| &solids[solid]);
         let pose = bodies[first.body].pose * first.pose;
@@ -325,8 +325,8 @@ impl Candidate {
         let relative = pose.inv_mul(&other);
         let round = [first, second].map(|solid| solid.round.map_or(0.0, |(_, radius)| radius));
         let reuse = match round[0] + round[1] {
-            0.0 => REUSE,
-            radius => REUSE.min(ROUND_REUSE * radius / MILLIMETRES),
+            0.0 => REUSE_DISTANCE,
+            radius => REUSE_DISTANCE.min(REUSE_ANGLE * radius / MILLIMETRES),
         };
         if !has_stayed(self.computed_at.as_ref(), &relative, second.reach, reuse) {
             self.compute(&relative, (first, second), prediction);
@@ -334,7 +334,7 @@ impl Candidate {
             self.choose(prediction);
             self.computed_at = Some(relative);
         }
-        self.report(geoms, &pose, &relative, found);
+        self.report(geoms, &pose, &relative, touches);
     }
 
     /// Computes the manifold from scratch.
@@ -396,11 +396,11 @@ impl Candidate {
     }
 
     /// Appends the stored points with their current gaps.
-    fn report(&self, geoms: usize, first: &Pose, relative: &Pose, found: &mut Vec<Touch>) {
+    fn report(&self, geoms: usize, first: &Pose, relative: &Pose, touches: &mut Vec<Touch>) {
         let normal = first.rotation * self.axis;
         for [own, other] in &self.points {
             let gap = (relative * other - own).dot(&self.axis);
-            found.push(Touch {
+            touches.push(Touch {
                 pair: self.pair.bodies,
                 geoms,
                 point: first * (own + self.axis * (0.5 * gap)),

@@ -161,20 +161,22 @@ impl DirectWorld {
             force.net += contact.impulse.xyz() * per_step;
             force.normal_sum += contact.impulse.dot(&contact.normal) * per_step;
         }
-        let (Some(along), Some(joint)) = (&self.axial_friction, self.joints.last()) else { return };
+        let (Some(axial), Some(joint)) = (&self.axial_friction, self.joints.last()) else {
+            return;
+        };
         let net = joint.friction(&self.bodies);
         for (pair, force) in self.pairs.iter().zip(&mut self.forces) {
-            force.net += net * pair.sign(along.parent, along.child).unwrap_or(0.0);
+            force.net += net * pair.sign(axial.parent, axial.child).unwrap_or(0.0);
         }
     }
 
     /// Sets the limit of the axial friction for the current poses.
     fn update_axial_friction(&mut self) {
-        let (Some(along), Some(joint)) = (&self.axial_friction, self.joints.last_mut()) else {
+        let (Some(axial), Some(joint)) = (&self.axial_friction, self.joints.last_mut()) else {
             return;
         };
-        let [parent, child] = [along.parent, along.child].map(|body| &self.bodies[body.0].pose);
-        joint.set_friction(along.limit(parent, child), self.settings.stick_damping);
+        let [parent, child] = [axial.parent, axial.child].map(|body| &self.bodies[body.0].pose);
+        joint.set_friction(axial.limit(parent, child), self.settings.stick_damping);
     }
 
     /// Takes a step with the detected contacts.

@@ -138,7 +138,7 @@ pub fn write(scene: &Scene, name: &str, settings: &MjcfSettings) -> Result<Strin
         contact::pairs(scene, settings),
         actuators(scene),
     ]);
-    let tendon = |along| tendon(along, settings.step_s);
+    let tendon = |friction| tendon(friction, settings.step_s);
     let model = model.with_children(scene.axial_friction.iter().flat_map(tendon));
     let units = "<!-- Lengths in m, masses in kg, forces in N, angles in rad. -->\n";
     Ok(units.to_owned() + &model.text(0))
@@ -155,7 +155,7 @@ const STICKING: f64 = 0.9999;
 
 /// Returns the tendon of an axial friction and, as custom numbers, depths, m, with the largest force there, N: MJCF has
 /// no friction that depends on position, so `frictionloss` has to be set in each step.
-fn tendon(along: &AxialFriction, step_s: f64) -> [Element; 2] {
+fn tendon(friction: &AxialFriction, step_s: f64) -> [Element; 2] {
     let site = |name| Element::new("site").with("site", name);
     let spatial = Element::new("spatial")
         .with("name", MATING_FORCE)
@@ -167,7 +167,7 @@ fn tendon(along: &AxialFriction, step_s: f64) -> [Element; 2] {
         .with_children([site(ANCHOR), site(MATING_FORCE)]);
     let numeric = |name: &str, column: usize| {
         let name = format!("{MATING_FORCE}: {name}");
-        let values = along.force.iter().map(|row| row[column]);
+        let values = friction.force.iter().map(|row| row[column]);
         Element::new("numeric").with("name", name).numbers("data", values)
     };
     let table = [numeric("depth of the tip", 0), numeric("frictionloss", 1)];

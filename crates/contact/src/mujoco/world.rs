@@ -10,7 +10,7 @@ use nalgebra::{Matrix3, Quaternion, Rotation3, Translation3, UnitQuaternion, Vec
 use std::sync::Arc;
 
 /// Largest speed or coordinate, SI, of a state that has not diverged.
-const HUGE: f64 = 1e6;
+const MAX_STATE: f64 = 1e6;
 
 /// Scene simulated by MuJoCo.
 #[derive(Clone)]
@@ -31,7 +31,7 @@ pub(super) struct MujocoWorld {
 /// Axial friction ([`AxialFriction`]), simulated as the friction of a tendon.
 #[derive(Clone)]
 struct MatingForce {
-    along: AxialFriction,
+    friction: AxialFriction,
     tendon: usize,
     /// Index of the first component of the child's linear velocity.
     velocity: usize,
@@ -87,15 +87,15 @@ impl MujocoWorld {
                 owners[id(&model, MjtObjBase::mjOBJ_GEOM, name)] = BodyId(body);
             }
         }
-        let axial_friction = scene.axial_friction.clone().map(|along| {
-            let child = id(&model, MjtObjBase::mjOBJ_BODY, &scene.bodies[along.child.0].name);
+        let axial_friction = scene.axial_friction.clone().map(|friction| {
+            let child = id(&model, MjtObjBase::mjOBJ_BODY, &scene.bodies[friction.child.0].name);
             let tendon = id(&model, MjtObjBase::mjOBJ_TENDON, MATING_FORCE);
             let velocity = model.body_dofadr()[child] as usize;
-            let hangs = |joint: &Joint, body| joint.parent == along.child && joint.child == body;
-            let own = |body| body == along.child || scene.joints.iter().any(|j| hangs(j, body));
+            let hangs = |joint: &Joint, body| joint.parent == friction.child && joint.child == body;
+            let own = |body| body == friction.child || scene.joints.iter().any(|j| hangs(j, body));
             let sign = |body| f64::from(u8::from(own(body)));
             let signs = scene.contacts.iter().map(|pair| sign(pair.second) - sign(pair.first));
-            MatingForce { tendon, velocity, signs: signs.collect(), along }
+            MatingForce { tendon, velocity, signs: signs.collect(), friction }
         });
         let mut data = MjData::new(Arc::new(model));
         data.kinematics();
@@ -106,8 +106,8 @@ impl MujocoWorld {
 
     /// Sets the limit of the axial friction for the current poses.
     fn update_axial_friction(&mut self) {
-        let Some(MatingForce { along, tendon, .. }) = &self.axial_friction else { return };
-        let limit = along.limit(&self.pose(along.parent), &self.pose(along.child));
+        let Some(MatingForce { friction, tendon, .. }) = &self.axial_friction else { return };
+        let limit = friction.limit(&self.pose(friction.parent), &self.pose(friction.child));
         let tendon = *tendon;
         if self.data.model().tendon_frictionloss()[tendon] != limit {
             self.change(|model| model.tendon_frictionloss_mut()[tendon] = limit);
@@ -117,13 +117,13 @@ impl MujocoWorld {
     /// Adds the axial friction to the forces of its pair: the constraint force of the child less the contact forces on
     /// the child and on the bodies attached to it.
     fn add_axial_friction(&mut self) {
-        let Some(MatingForce { along, tendon, velocity, signs }) = &self.axial_friction else {
+        let Some(MatingForce { friction, tendon, velocity, signs }) = &self.axial_friction else {
             return;
         };
         if self.data.model().tendon_frictionloss()[*tendon] == 0.0 {
             return;
         }
-        let axis = self.pose(along.parent).rotation * Vector3::z();
+        let axis = self.pose(friction.parent).rotation * Vector3::z();
         let mut net =
             Vector3::from_column_slice(&self.data.qfrc_constraint()[*velocity..velocity + 3]);
         for (sign, force) in signs.iter().zip(&self.forces) {
@@ -131,7 +131,7 @@ impl MujocoWorld {
         }
         let net = axis * net.dot(&axis);
         for (pair, force) in self.pairs.iter().zip(&mut self.forces) {
-            force.net += net * pair.sign(along.parent, along.child).unwrap_or(0.0);
+            force.net += net * pair.sign(friction.parent, friction.child).unwrap_or(0.0);
         }
     }
 
@@ -178,7 +178,7 @@ impl MujocoWorld {
 
     fn is_finite(&self) -> bool {
         // A NaN fails the comparison.
-        self.data.qpos().iter().chain(self.data.qvel()).all(|value| value.abs() < HUGE)
+        self.data.qpos().iter().chain(self.data.qvel()).all(|value| value.abs() < MAX_STATE)
     }
 
     /// Changes a copy of the model; snapshots keep the old one.

@@ -52,10 +52,6 @@ impl Engine for Rapier {
         format!("rapier3d-f64 {}", rapier3d_f64::VERSION)
     }
 
-    fn has_torsional_friction(&self) -> bool {
-        false
-    }
-
     fn supports(&self, scene: &Scene) -> Result<(), Unsupported> {
         let Some((part, feature)) = unsupported_parts(scene).next() else { return Ok(()) };
         Err(Unsupported::Lacking { engine: self.version(), part: part.to_owned(), feature })

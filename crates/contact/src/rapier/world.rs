@@ -57,18 +57,18 @@ impl RapierWorld {
             [[pair.first, pair.second], [pair.second, pair.first]].map(|ends| (ends, coefficient))
         });
         let frictions = Arc::new(Frictions(frictions.collect()));
-        let axial_friction = scene.axial_friction.clone().map(|along| {
+        let axial_friction = scene.axial_friction.clone().map(|friction| {
             let free = rp::GenericJoint::new(rp::JointAxesMask::empty());
-            let joint = insert(along.parent, along.child, free);
-            (along, joint)
+            let joint = insert(friction.parent, friction.child, free);
+            (friction, joint)
         });
         RapierWorld { world, bodies, joints, frictions, axial_friction }
     }
 
     /// Sets the limit of the axial friction for the current poses.
     fn update_axial_friction(&mut self) {
-        let Some((along, joint)) = &self.axial_friction else { return };
-        let limit = along.limit(&self.pose(along.parent), &self.pose(along.child));
+        let Some((friction, joint)) = &self.axial_friction else { return };
+        let limit = friction.limit(&self.pose(friction.parent), &self.pose(friction.child));
         if let Some(joint) = self.world.impulse_joints.get_mut(*joint, true) {
             let damper = Spring { limit, ..Spring::new(0.0, Direct::default().stick_damping) };
             set_motor(&mut joint.data, rp::JointAxis::LinZ, &damper);
@@ -77,14 +77,14 @@ impl RapierWorld {
 
     /// Returns the axial friction over the last substep on the second of two bodies, world axes, N.
     fn axial_friction(&self, first: BodyId, second: BodyId) -> Option<Vector3<f64>> {
-        let (along, joint) = self.axial_friction.as_ref()?;
-        let sign = sign((along.parent, along.child), (first, second))?;
+        let (friction, joint) = self.axial_friction.as_ref()?;
+        let sign = sign((friction.parent, friction.child), (first, second))?;
         let motor = &self.world.impulse_joints.get(*joint)?.data.motors[2];
         let parameters = &self.world.integration_parameters;
         let substep = parameters.dt / parameters.num_solver_iterations as f64;
         // The impulse of the motor acts on the first body.
         let force = -sign * motor.impulse / substep / LENGTH;
-        Some(self.pose(along.parent).rotation * Vector3::z() * force)
+        Some(self.pose(friction.parent).rotation * Vector3::z() * force)
     }
 }
 

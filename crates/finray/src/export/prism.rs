@@ -103,9 +103,7 @@ impl Prism {
 
     /// Extrudes an outer ring with holes (clockwise rings) from 0 to `depth`, mm.
     fn new(outer: &Ring, holes: &[Ring], depth: f64) -> Result<Self, PrismError> {
-        let mesh = Mesh::coarsest(outer, holes).map_err(|error| {
-            PrismError(format!("the profile cannot be divided into triangles: {error}"))
-        })?;
+        let mesh = Mesh::coarsest(outer, holes).map_err(|error| PrismError(error.to_string()))?;
         let mut numbers: BTreeMap<u32, u32> = BTreeMap::new();
         let mut corners = Vec::new();
         let mut number = |node: u32| {
@@ -125,10 +123,10 @@ impl Prism {
         triangles.extend(rim.flat_map(|&[a, b]| [[a, b, b + 1], [a, b + 1, a + 1]]));
         let prism = Prism { corners, triangles }.closed()?;
         let area = polygon::area(outer) + holes.iter().map(|hole| polygon::area(hole)).sum::<f64>();
-        let (found, expected) = (prism.volume(), area * depth);
-        if (found - expected).abs() > VOLUME_TOLERANCE * expected {
+        let (volume, expected) = (prism.volume(), area * depth);
+        if (volume - expected).abs() > VOLUME_TOLERANCE * expected {
             let problem =
-                format!("the volume is {found:.1} mm3; area times depth is {expected:.1} mm3");
+                format!("the volume is {volume:.1} mm3; area times depth is {expected:.1} mm3");
             return Err(PrismError(problem));
         }
         Ok(prism)

@@ -243,7 +243,7 @@ fn check_rows(geometry: &Geometry, data: &SheetData) -> Vec<(&'static str, Strin
         format!("{mean:.digits$} ± {sd:.digits$} N/mm, measured model")
     };
     let none = || "no measured model".to_owned();
-    let [model_across, model_along] = measured.map_or([none(), none()], |found| found.map(of));
+    let [model_across, model_along] = measured.map_or([none(), none()], |model| model.map(of));
     let without = if geometry.block().is_some() { " without the block" } else { "" };
     let modulus = geometry.finger.material.modulus / 1e9;
     // The print is checked against the stiffness that the simulation uses.

@@ -51,6 +51,16 @@ fn a_modulus_in_other_units_is_asked_about() {
     assert!(error.contains("units look wrong") && error.contains("modulus_gpa"), "{error}");
 }
 
+/// A finger without stiffness has a mesh, which the message must not blame.
+#[test]
+fn an_error_of_the_stiffness_does_not_name_the_mesh() {
+    let mut geometry = infill(20.0, 20.0);
+    geometry.finger.material.modulus = 0.0;
+    let error = compute(&geometry).unwrap_err().to_string();
+    assert_eq!(error, format!("fingers/finray9.toml: {}", MeshError::Disconnected));
+    assert!(!error.contains("mesh"), "{error}");
+}
+
 #[test]
 fn what_is_held_by_nothing_is_an_error() {
     let square = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(|(x, y)| Point2::new(x, y));

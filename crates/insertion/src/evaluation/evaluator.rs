@@ -239,7 +239,7 @@ impl Evaluator {
         stop: &AtomicBool,
     ) -> Result<FirmResult, RigError> {
         if measured.window.nominal != Outcome::Inserted {
-            return Ok(FirmResult::NONE);
+            return Ok(FirmResult::default());
         }
         let rig = |factor| self.rig(specimen, measured.taught, factor);
         let (whole, half) = (rig(1.0)?, rig(0.5)?);

@@ -11,8 +11,8 @@ use crate::space::Design;
 use crate::stiffness::Measurement;
 use crate::surrogate::{Estimate, Prediction};
 use ask_tell::statistics::Moments;
-use finray::FingerError;
 use finray::mechanics::FingerStiffness;
+use input::InputError;
 
 /// Returns the prediction for a design from `infill`, the prediction for a finger of the file with its infill. For each
 /// changed number of the file, `ln(value / file value)` is added in quadrature to `hull_distance`.
@@ -24,7 +24,7 @@ pub fn predict(
     measured: &[Measurement],
     design: &Design,
     infill: Prediction,
-) -> Result<Prediction, FingerError> {
+) -> Result<Prediction, InputError> {
     let change = |(key, value): (&String, &f64)| {
         fingers.file.numbers.number(key).map_or(0.0, |from| libm::log(value / from))
     };
@@ -57,14 +57,14 @@ fn by_direction(computed: &FingerStiffness) -> [f64; 2] {
 
 /// Returns the standard deviation of ln(measured / computed) over the measured fingers in both directions; 1 for fewer
 /// than two fingers.
-fn scatter(fingers: &ComputedFingers, measured: &[Measurement]) -> Result<[f64; 2], FingerError> {
+fn scatter(fingers: &ComputedFingers, measured: &[Measurement]) -> Result<[f64; 2], InputError> {
     let ratios = measured.iter().map(|m| {
         let [density, direction] = m.infill();
         let computed = fingers.stiffness(&Design::infill(density, direction))?;
         let [compliance, assembly] = by_direction(&computed);
         Ok([libm::log(m.compliance / compliance), libm::log(m.assembly / assembly)])
     });
-    let ratios: Vec<[f64; 2]> = ratios.collect::<Result<_, FingerError>>()?;
+    let ratios: Vec<[f64; 2]> = ratios.collect::<Result<_, InputError>>()?;
     Ok([0, 1].map(|axis| {
         let scatter = Moments::of(ratios.iter().map(|ratio| ratio[axis])).sample_deviation();
         if scatter.is_nan() { 1.0 } else { scatter }

@@ -15,7 +15,7 @@ use std::sync::atomic::AtomicBool;
 /// Distance between the starts that are tried, in grid steps.
 const STRIDE: OffsetStep = 5;
 /// Farthest start that is tried, in grid steps: 10 mm.
-const FARTHEST: OffsetStep = 100;
+const MAX_SHIFT: OffsetStep = 100;
 
 /// A taught start.
 #[derive(Debug, Clone, PartialEq)]
@@ -43,24 +43,24 @@ pub struct Miss {
 /// If no start inserts.
 pub fn teach(rig: &dyn Rig, finger: &Finger, stop: &AtomicBool) -> Result<TaughtStart, Box<Miss>> {
     let grasp = Grasp { stop, ..Grasp::of(finger) };
-    let grasped = rig.hold(grasp);
-    let found = first_inserting(&*grasped)?;
-    let moved = Shifted { rig, shift: found };
+    let grasped = rig.grasp(grasp);
+    let shift = first_inserting(&*grasped)?;
+    let moved = Shifted { rig, shift };
     let Evaluation { mut window, peak_force_n, .. } =
         tolerance::evaluate_grasp(&moved, grasp, Search::Strides);
     let sum = window.negative_steps + window.positive_steps;
     // The division rounds towards zero.
     let middle = sum.clamp(-OFFSET_LIMIT_STEPS, OFFSET_LIMIT_STEPS) / 2;
-    let inserts = grasped.trial(offset(found + middle)).outcome == Outcome::Inserted;
+    let inserts = grasped.trial(offset(shift + middle)).outcome == Outcome::Inserted;
     let middle = if inserts { middle } else { 0 };
     window.negative_steps -= middle;
     window.positive_steps -= middle;
-    Ok(TaughtStart { shift: found + middle, window, peak_force_n })
+    Ok(TaughtStart { shift: shift + middle, window, peak_force_n })
 }
 
 /// Returns the first start that inserts, searching outward from the start in the task file.
 fn first_inserting(grasped: &dyn Grasped) -> Result<OffsetStep, Box<Miss>> {
-    let outward = (1..=FARTHEST / STRIDE).flat_map(|n| [n * STRIDE, -n * STRIDE]);
+    let outward = (1..=MAX_SHIFT / STRIDE).flat_map(|n| [n * STRIDE, -n * STRIDE]);
     let mut nearest = Miss { shift: 0, trial: grasped.trial(0.0) };
     if nearest.trial.outcome == Outcome::Inserted {
         return Ok(0);
@@ -86,8 +86,8 @@ pub struct Shifted<R> {
 }
 
 impl<R: Deref<Target: Rig> + Send + Sync> Rig for Shifted<R> {
-    fn hold<'a>(&'a self, grasp: Grasp<'a>) -> Box<dyn Grasped + 'a> {
-        Box::new(Shifted { rig: self.rig.hold(grasp), shift: self.shift })
+    fn grasp<'a>(&'a self, grasp: Grasp<'a>) -> Box<dyn Grasped + 'a> {
+        Box::new(Shifted { rig: self.rig.grasp(grasp), shift: self.shift })
     }
 
     fn record(&self, grasp: Grasp<'_>, shift: f64) -> Option<Recording> {
@@ -126,6 +126,6 @@ mod tests {
         }
         let far = Shifted { rig: &fake as &dyn Rig, shift: 200 };
         let nearest = teach(&far, &finger, &NEVER).unwrap_err();
-        assert!(nearest.trial.margin < 0.0 && nearest.shift.abs() <= FARTHEST, "{nearest:?}");
+        assert!(nearest.trial.margin < 0.0 && nearest.shift.abs() <= MAX_SHIFT, "{nearest:?}");
     }
 }

@@ -32,7 +32,7 @@ pub fn evaluate(rig: &dyn Rig, finger: &Finger, search: Search) -> Evaluation {
 
 /// Measures the window of one grasp as [`evaluate`] does. The result is invalid once the stop flag of the grasp is set.
 pub fn evaluate_grasp(rig: &dyn Rig, grasp: Grasp, search: Search) -> Evaluation {
-    let grasped = rig.hold(grasp);
+    let grasped = rig.grasp(grasp);
     let nominal = [grasped.trial(0.0)];
     let Trial { outcome, margin, .. } = nominal[0];
     let ((negative, below), (positive, above)) = if outcome == Outcome::Inserted {

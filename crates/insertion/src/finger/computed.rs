@@ -13,9 +13,9 @@
 use super::{Finger, Pad};
 use crate::surrogate::Prediction;
 use crate::task::finger::Coupling;
-use finray::FingerError;
 use finray::printed::PrintedFinger;
 use finray::stiffness::PlanarStiffness;
+use input::InputError;
 use input::units::{MM, N_PER_MM};
 use nalgebra::{Matrix3, Matrix6};
 
@@ -35,7 +35,7 @@ pub(super) fn finger(
     shoulder: f64,
     at_pad: &Prediction,
     [rcc, tilting]: [Option<f64>; 2],
-) -> Result<Finger, FingerError> {
+) -> Result<Finger, InputError> {
     let [compliance, assembly] = [at_pad.compliance.mean, at_pad.assembly.mean];
     let outline = &printed.outline;
     let pad = Pad { width: outline.depth, height: outline.pad, roof: outline.roof };
@@ -57,7 +57,7 @@ pub(super) fn finger(
              paper",
             lever / MM
         );
-        Err(FingerError::finger(printed, problem))
+        Err(printed.fault(problem))
     };
     let in_y = at_centre("compliance", compliance, below)?;
     let in_z = at_centre("assembly", assembly, ahead)?;
@@ -109,7 +109,7 @@ mod tests {
     fn finger(
         [compliance, assembly]: [f64; 2],
         overrides: [Option<f64>; 2],
-    ) -> Result<Finger, FingerError> {
+    ) -> Result<Finger, InputError> {
         let (plane, across) = stiffness(8.0 * MM, -2.0 * MM, 2.5);
         super::finger(
             &finger_file().finger,

@@ -7,9 +7,10 @@ use crate::space::{DIRECTION_KEY, Design};
 use crate::surrogate::Prediction;
 use crate::task::Task;
 use crate::task::finger::Coupling;
-use finray::FingerError;
+use crate::value_name;
 use finray::mechanics::{FingerStiffness, StiffnessCache};
 use input::units::MM;
+use input::{Check, InputError};
 pub use parameters::numbers::{RCC_KEY, TILTING_KEY};
 use serde::{Deserialize, Serialize};
 
@@ -26,11 +27,8 @@ pub enum FingerModelKind {
 
 impl FingerModelKind {
     /// Returns the name on the command line and in study files.
-    pub fn name(self) -> &'static str {
-        match self {
-            FingerModelKind::Paper => "paper",
-            FingerModelKind::Computed => "computed",
-        }
+    pub fn name(self) -> String {
+        value_name(self)
     }
 }
 
@@ -82,7 +80,7 @@ impl FingerSource {
         at_pad: &Prediction,
         design: &Design,
         task: &Task,
-    ) -> Result<Finger, FingerError> {
+    ) -> Result<Finger, InputError> {
         let rcc = design.get(RCC_KEY).map(|mm| mm * MM);
         let direction = design.get(DIRECTION_KEY).unwrap_or_default();
         match self {
@@ -93,7 +91,9 @@ impl FingerSource {
             }
             FingerSource::Computed(fingers) => {
                 if task.finger.coupling.is_some() {
-                    return Err(FingerError::Coupled { task: task.name.clone() });
+                    let problem = "is set, but the ribs couple the springs of a computed finger; \
+                                   delete it, or use --finger-model paper";
+                    return Check { file: &task.name }.fail("finger.coupling", problem);
                 }
                 let rcc = rcc.or(task.finger.rcc.map(|rcc| rcc.at(direction)));
                 let given = [rcc, design.get(TILTING_KEY)];
@@ -132,7 +132,7 @@ impl ComputedFingers {
     ///
     /// # Errors
     /// If the finger cannot be printed.
-    pub fn stiffness(&self, design: &Design) -> Result<FingerStiffness, FingerError> {
+    pub fn stiffness(&self, design: &Design) -> Result<FingerStiffness, InputError> {
         self.cache.stiffness(&self.file.with(design)?, &infill(design, None))
     }
 }

@@ -3,10 +3,10 @@
 
 use super::{Estimate, Fitted, Samples};
 use crate::stiffness::{Axis, Infill};
-use finray::FingerError;
 use finray::mechanics::over_phases;
 use finray::printed::PrintedFinger;
 use finray::stiffness::PlanarStiffness;
+use input::InputError;
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 
@@ -30,7 +30,7 @@ impl ComputedStiffness {
     ///
     /// # Errors
     /// If the finger cannot be printed.
-    pub fn stiffness(&self, axis: Axis, infill: Infill) -> Result<f64, FingerError> {
+    pub fn stiffness(&self, axis: Axis, infill: Infill) -> Result<f64, InputError> {
         let key = infill.map(f64::to_bits);
         let cache = || self.cache.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(cached) = cache().get(&key) {

@@ -1,7 +1,8 @@
 //! Convex hull of the measured designs, and distance to it.
 
 use crate::stiffness::Infill;
-use crate::task::geometry::{convex_outline, cross};
+use crate::task::geometry::convex_outline;
+use finray::polygon::edges;
 use nalgebra::Point2;
 
 /// Convex hull in coordinates scaled by the measured spans.
@@ -37,9 +38,8 @@ impl Hull {
     /// Returns the distance in units of the spans; 0 inside and on the edge.
     pub fn distance(&self, point: Infill) -> f64 {
         let p = self.scale(point);
-        let edges =
-            || self.corners.iter().zip(self.corners.iter().cycle().skip(1)).map(|(a, b)| (*a, *b));
-        let inside = self.corners.len() > 2 && edges().all(|(a, b)| cross(a, b, p) >= 0.0);
+        let edges = || edges(&self.corners);
+        let inside = self.corners.len() > 2 && edges().all(|(a, b)| (b - a).perp(&(p - a)) >= 0.0);
         let distance = edges().map(|(a, b)| to_segment(a, b, p)).fold(f64::INFINITY, f64::min);
         if inside || distance < TOLERANCE { 0.0 } else { distance }
     }

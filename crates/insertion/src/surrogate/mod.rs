@@ -72,10 +72,7 @@ impl Prediction {
 
     /// Returns the estimate of one axis, N/m.
     pub fn axis(&self, axis: Axis) -> Estimate {
-        match axis {
-            Axis::Assembly => self.assembly,
-            Axis::Compliance => self.compliance,
-        }
+        [self.assembly, self.compliance][axis as usize]
     }
 }
 

@@ -4,8 +4,8 @@ use super::hull::Hull;
 use super::link::{Link, LinkKind};
 use super::{Estimate, Fitted, Prediction, Samples, computed, gp, leave_one_out, ridge, samples};
 use crate::stiffness::{Axis, Infill, Measurement, SurrogateError, check_all};
-use finray::FingerError;
 use finray::printed::PrintedFinger;
+use input::InputError;
 use input::units::N_PER_MM;
 
 /// Kind of model of one axis.
@@ -171,7 +171,7 @@ pub fn fit(measurements: &[Measurement], finger: &PrintedFinger) -> Result<Model
             true => computed.stiffness(axis, m.infill()),
             false => Ok(1.0),
         };
-        let units = measurements.iter().map(unit).collect::<Result<_, FingerError>>()?;
+        let units = measurements.iter().map(unit).collect::<Result<_, InputError>>()?;
         choose(&AxisData::new(axis, measurements, units), kinds)
     };
     let (assembly, mut loo) = choose(Axis::Assembly)?;
@@ -208,12 +208,12 @@ impl Model {
     ///
     /// # Errors
     /// If the model uses the computed stiffness and the finger cannot be computed.
-    pub fn predict(&self, infill: Infill) -> Result<Prediction, FingerError> {
+    pub fn predict(&self, infill: Infill) -> Result<Prediction, InputError> {
         let along = |axis| {
             let Chosen { fitted, widen } = &self.chosen[axis as usize];
             let unit = if self.ratios { self.computed.stiffness(axis, infill)? } else { 1.0 };
             let Estimate { mean, sd } = fitted.predict(infill);
-            Ok::<_, FingerError>(Estimate { mean: mean * unit, sd: sd * widen * unit })
+            Ok::<_, InputError>(Estimate { mean: mean * unit, sd: sd * widen * unit })
         };
         let (compliance, assembly) = (along(Axis::Compliance)?, along(Axis::Assembly)?);
         Ok(Prediction { compliance, assembly, hull_distance: self.hull.distance(infill) })

@@ -4,9 +4,9 @@ use super::{Ending, Phase, Strategy};
 use input::units::MM;
 
 /// Largest accepted duration of a trial, s.
-pub const LONGEST_TRIAL_S: f64 = 60.0;
+pub const MAX_TRIAL_S: f64 = 60.0;
 /// Shortest duration of a move, s; it bounds the acceleration of a tiny displacement.
-pub const SHORTEST_MOVE_S: f64 = 0.02;
+pub const MIN_MOVE_S: f64 = 0.02;
 /// Longest wait for the TCP to come within the tolerance of a target once the commanded motion has ended, s.
 pub const TOLERANCE_TIMEOUT_S: f64 = 1.0;
 /// Time to close the jaws and for the fingers to come to rest, s.
@@ -24,15 +24,15 @@ impl Phase {
             Ending::Duration(rest) => rest.max(settling),
             Ending::Tolerance(_) => TOLERANCE_TIMEOUT_S,
             Ending::Touch { preload, detection } => {
-                (preload / self.speed).max(SHORTEST_MOVE_S) + detection.latency + 2.0 * settling
+                (preload / self.speed).max(MIN_MOVE_S) + detection.latency + 2.0 * settling
             }
         };
-        (length / self.speed).max(SHORTEST_MOVE_S) + after
+        (length / self.speed).max(MIN_MOVE_S) + after
     }
 }
 
 impl Strategy {
-    /// Checks that no trial can take longer than `LONGEST_TRIAL_S` on a robot that follows a command within
+    /// Checks that no trial can take longer than `MAX_TRIAL_S` on a robot that follows a command within
     /// `settling` seconds and lengthens the move of a phase by `extra`, m.
     ///
     /// # Errors
@@ -41,7 +41,7 @@ impl Strategy {
         let seconds = |phase: &Phase| phase.longest_s(extra(phase), settling);
         let total = GRASP_S + CARRY_S + settling + self.phases.iter().map(seconds).sum::<f64>();
         // NaN fails the comparison.
-        if total <= LONGEST_TRIAL_S {
+        if total <= MAX_TRIAL_S {
             return Ok(());
         }
         let longest = self.phases.iter().max_by(|a, b| seconds(a).total_cmp(&seconds(b)));
@@ -49,7 +49,7 @@ impl Strategy {
             let (name, longest, speed) = (&phase.name, seconds(phase), phase.speed / MM);
             format!(", of which \"{name}\" takes {longest:.1} s at {speed:.3} mm/s")
         });
-        Err(format!("a trial takes {total:.1} s{longest}; at most {LONGEST_TRIAL_S} s is accepted"))
+        Err(format!("a trial takes {total:.1} s{longest}; at most {MAX_TRIAL_S} s is accepted"))
     }
 }
 

@@ -159,7 +159,7 @@ fn fit(size: &Vector3<f64>, edges: &[(Edge, Cut)]) -> bool {
 
 /// Returns the corners of the intersection of all half-spaces.
 pub(super) fn corners(spaces: &[HalfSpace]) -> Vec<Point3<f64>> {
-    let mut found: Vec<Point3<f64>> = Vec::new();
+    let mut points: Vec<Point3<f64>> = Vec::new();
     for (i, a) in spaces.iter().enumerate() {
         for (j, b) in spaces.iter().enumerate().skip(i + 1) {
             for c in &spaces[j + 1..] {
@@ -167,13 +167,13 @@ pub(super) fn corners(spaces: &[HalfSpace]) -> Vec<Point3<f64>> {
                 let inside = |(normal, distance): &HalfSpace| {
                     normal.dot(&point.coords) <= distance + SAME / 10.0
                 };
-                if spaces.iter().all(inside) && !found.iter().any(|p| (p - point).norm() < SAME) {
-                    found.push(point);
+                if spaces.iter().all(inside) && !points.iter().any(|p| (p - point).norm() < SAME) {
+                    points.push(point);
                 }
             }
         }
     }
-    found
+    points
 }
 
 /// Returns the intersection of three planes; `None` unless it is one point.

@@ -84,7 +84,7 @@ impl Coupling {
     }
 }
 
-const LARGEST_DIRECTION_DEG: f64 = 90.0;
+const MAX_DIRECTION_DEG: f64 = 90.0;
 
 #[derive(Deserialize, Default)]
 #[serde(deny_unknown_fields)]
@@ -114,7 +114,7 @@ enum RawAxis {
 }
 
 pub(super) fn finger(check: Check<'_>, raw: &RawFinger) -> Result<FingerModel, InputError> {
-    if let Some(last) = raw.rcc.map(|rcc| rcc.at(LARGEST_DIRECTION_DEG) / MM)
+    if let Some(last) = raw.rcc.map(|rcc| rcc.at(MAX_DIRECTION_DEG) / MM)
         && last <= 0.0
     {
         let problem = format!("is {last} mm at 90 degrees; it must stay above 0");

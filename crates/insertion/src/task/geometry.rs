@@ -156,11 +156,7 @@ pub(super) fn centred(points: &[Point3<f64>]) -> (Shape, Vector3<f64>) {
 
 /// Returns the two axes that are not `axis`, in the order x, y, z.
 pub fn other_axes(axis: usize) -> (usize, usize) {
-    match axis {
-        0 => (1, 2),
-        1 => (0, 2),
-        _ => (0, 1),
-    }
+    [(1, 2), (0, 2), (0, 1)][axis.min(2)]
 }
 
 /// Returns the convex hull of points in a plane, counter-clockwise, by Andrew's monotone chain.
@@ -183,7 +179,7 @@ pub fn outline_by<P: Copy + PartialEq>(
         let mut corners: Vec<P> = Vec::new();
         for p in points {
             while let [.., a, b] = &corners[..]
-                && cross(at(a), at(b), at(p)) <= 0.0
+                && (at(b) - at(a)).perp(&(at(p) - at(a))) <= 0.0
             {
                 corners.pop();
             }
@@ -196,11 +192,6 @@ pub fn outline_by<P: Copy + PartialEq>(
     let mut corners = half(&mut points.iter());
     corners.extend(half(&mut points.iter().rev()));
     corners
-}
-
-/// Returns twice the signed area of the triangle; positive if `p` is left of `a -> b`.
-pub(crate) fn cross(a: Point2<f64>, b: Point2<f64>, p: Point2<f64>) -> f64 {
-    (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x)
 }
 
 /// Returns the volume of a solid, m3.
@@ -245,11 +236,11 @@ pub type Triangles = (Vec<Point3<f64>>, Vec<[usize; 3]>);
 pub fn hull(points: &[Point3<f64>]) -> Option<Triangles> {
     let (corners, faces) = shapes::hull(points)?;
     let faces: Vec<_> = faces.iter().map(|face| face.map(|corner| corner as usize)).collect();
-    (surface_moments(&corners, &faces).0 > FLAT).then_some((corners, faces))
+    (surface_moments(&corners, &faces).0 > MIN_VOLUME).then_some((corners, faces))
 }
 
 /// Volume below which a hull counts as flat, m3.
-pub const FLAT: f64 = 1e-7 * MM * MM * MM;
+pub const MIN_VOLUME: f64 = 1e-7 * MM * MM * MM;
 
 /// Returns volume, centroid and second moments about it of a closed surface of outward triangles.
 pub fn surface_moments(corners: &[Point3<f64>], faces: &[[usize; 3]]) -> Moments {

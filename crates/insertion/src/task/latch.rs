@@ -2,7 +2,7 @@
 
 use super::Part;
 use super::geometry::Axis;
-use super::raw_part::THINNEST;
+use super::raw_part::MIN_EXTENT;
 use input::units::read::{gpa, mm};
 use input::{Check, InputError};
 use nalgebra::{Point3, Vector3};
@@ -59,25 +59,25 @@ fn stiffness(length: f64, width: f64, thickness: f64, modulus: f64) -> f64 {
 /// Checks a latch and replaces its flexure by a hinge.
 pub fn check_latch(check: Check<'_>, raw: &RawLatch, parts: &[Part]) -> Result<Latch, InputError> {
     let fail = |problem: String| check.fail("plug.latch.parts", problem);
-    let mut found = Vec::new();
+    let mut indices = Vec::new();
     for name in &raw.parts {
         let named = |part: &Part| part.name == *name;
         match parts.iter().position(named) {
             None => return fail(format!("the plug has no part {name:?}")),
-            Some(i) if found.contains(&i) || parts[i + 1..].iter().any(named) => {
+            Some(i) if indices.contains(&i) || parts[i + 1..].iter().any(named) => {
                 return fail(format!("{name:?} is given twice"));
             }
-            Some(i) => found.push(i),
+            Some(i) => indices.push(i),
         }
     }
-    if found.is_empty() || found.len() == parts.len() {
+    if indices.is_empty() || indices.len() == parts.len() {
         return fail("must be some of the plug's parts, not all".to_owned());
     }
-    found.sort_unstable();
+    indices.sort_unstable();
     let [root, end] = [raw.root, raw.end].map(Vector3::from);
     let along = end - root;
     let (axis, length) = (raw.axis as usize, along.norm());
-    if length < THINNEST {
+    if length < MIN_EXTENT {
         return check.fail("plug.latch.end_mm", "must be at least 0.001 mm from root_mm");
     }
     if along[axis].abs() > MAX_SLANT * length {
@@ -89,7 +89,7 @@ pub fn check_latch(check: Check<'_>, raw: &RawLatch, parts: &[Part]) -> Result<L
     }
     let stiffness = stiffness(length, raw.width, raw.thickness, raw.modulus);
     let hinge = Point3::from(end - along * GAMMA);
-    Ok(Latch { parts: found, hinge, axis, stiffness, flexure: [root, end].map(Point3::from) })
+    Ok(Latch { parts: indices, hinge, axis, stiffness, flexure: [root, end].map(Point3::from) })
 }
 
 #[cfg(test)]

@@ -60,7 +60,7 @@ mod tests {
         let mut task = task("usb");
         task.mating_force = Some(vec![[0.0, 0.0], [MM, force]]);
         task.grip.slip_limit = MM;
-        rig(task).hold(Grasp::of(&finger(2.2, 55.0))).trial(0.0)
+        rig(task).grasp(Grasp::of(&finger(2.2, 55.0))).trial(0.0)
     }
 
     #[test]

@@ -88,7 +88,7 @@ enum RawMotion {
 
 const MAX_PHASES: usize = 100;
 /// Largest radius of the contact patch that the torsional friction may represent, mm.
-const LARGEST_PATCH_MM: f64 = 100.0;
+const MAX_PATCH_MM: f64 = 100.0;
 
 impl Task {
     /// Reads and checks a task; `file` is named in errors.
@@ -173,14 +173,14 @@ fn check_speed(check: Check<'_>, strategy: &Strategy, limits: Limits) -> Result<
 fn check_torsion(check: Check<'_>, friction: &Friction) -> Result<(), InputError> {
     let PadTorsion::Points(torsion) = friction.finger_torsion else { return Ok(()) };
     // Largest moment per unit of normal force: all friction acts at the edge of the largest patch.
-    let (torsion, most) = (torsion / MM, LARGEST_PATCH_MM * friction.finger_plug);
+    let (torsion, most) = (torsion / MM, MAX_PATCH_MM * friction.finger_plug);
     if torsion <= most {
         return Ok(());
     }
     let [torsion, friction, most] = [torsion, friction.finger_plug, most].map(shown);
     let problem = format!(
         "is {torsion}; with a friction of {friction} it must be at most {most}: the contact patch then has \
-         a radius of {LARGEST_PATCH_MM} mm"
+         a radius of {MAX_PATCH_MM} mm"
     );
     check.fail("friction.finger_plug_torsion_mm", problem)
 }

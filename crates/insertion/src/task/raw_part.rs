@@ -64,7 +64,7 @@ pub struct RawEdges {
 pub const MAX_PARTS: usize = 3000;
 const MAX_CORNERS: usize = 256;
 /// Smallest extent of a part or an opening, m.
-pub const THINNEST: f64 = 1e-3 * MM;
+pub const MIN_EXTENT: f64 = 1e-3 * MM;
 
 /// Converts and checks the parts under a key.
 pub fn parts(check: Check<'_>, key: &str, parts: Vec<RawPart>) -> Result<Vec<Part>, InputError> {
@@ -114,7 +114,7 @@ fn part(check: Check<'_>, key: &str, part: RawPart) -> Result<Part, InputError> 
 
 /// Returns an interval, m, after checking that it is not too narrow.
 pub fn interval(check: Check<'_>, key: &str, range: [f64; 2]) -> Result<[f64; 2], InputError> {
-    if range[1] - range[0] < THINNEST {
+    if range[1] - range[0] < MIN_EXTENT {
         let [a, b] = range.map(units::mm);
         let problem = format!("is [{a}, {b}]; the second must exceed the first by 0.001 mm");
         return check.fail(key, problem);
@@ -147,7 +147,7 @@ fn with_cut_edges(
 ) -> Result<Solid, InputError> {
     let mut cuts: Vec<(Edge, Cut)> = Vec::new();
     for RawEdges { at, chamfer, radius } in edges {
-        let Some(found) = edges::named(at) else {
+        let Some(named) = edges::named(at) else {
             let problem = format!(
                 "unknown edge {at:?}; give a face, as in \"-z\", for its four edges, or two faces, as in \
                  \"+x-z\", for the edge between them"
@@ -159,7 +159,7 @@ fn with_cut_edges(
             (None, Some(radius)) => Cut::Radius(*radius),
             _ => return check.fail(key, "give either chamfer_mm or radius_mm"),
         };
-        for edge in found {
+        for edge in named {
             if edges::cut_at(&cuts, edge).is_some() {
                 return check.fail(key, format!("at = {at:?} repeats an edge"));
             }

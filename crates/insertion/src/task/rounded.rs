@@ -82,17 +82,17 @@ impl Rounded {
 
     /// Returns the cores along the round edges, the hull of the flat faces and the hulls of the corners.
     fn decompose(&self) -> Option<Vec<(Shape, Vector3<f64>)>> {
-        let mut found: Vec<_> =
+        let mut pieces: Vec<_> =
             self.edges.iter().filter_map(|(edge, cut)| self.core(edge, *cut)).collect();
         let flats = corners(&half_spaces([&Vector3::zeros(), &self.size], &self.edges, |_| 1));
         let (points, _) = geometry::hull(&flats)?;
         if points.len() != flats.len() {
             return None;
         }
-        found.push(geometry::centred(&points));
+        pieces.push(geometry::centred(&points));
         let unequal = self.rounded_corners().filter(|end| self.ball(end).is_none());
-        found.extend(unequal.filter_map(|end| self.corner_hull(&end)));
-        Some(found)
+        pieces.extend(unequal.filter_map(|end| self.corner_hull(&end)));
+        Some(pieces)
     }
 
     /// Returns the core along a round edge, shortened so that its ends do not protrude.

@@ -5,6 +5,7 @@ use super::run::{EngineRig, RigError};
 use crate::finger::Finger;
 use crate::robot::Robot;
 use crate::task::Task;
+use crate::value_name;
 use contact::Engine;
 use contact::direct::Direct;
 #[cfg(feature = "mujoco")]
@@ -43,15 +44,8 @@ pub struct EngineRecord {
 
 impl EngineKind {
     /// Returns the name on the command line and in study files.
-    pub fn name(self) -> &'static str {
-        match self {
-            EngineKind::Rapier => "rapier",
-            EngineKind::Direct => "direct",
-            #[cfg(feature = "mujoco")]
-            EngineKind::Mujoco => "mujoco",
-            #[cfg(feature = "fake-engine")]
-            EngineKind::Fake => "fake",
-        }
+    pub fn name(self) -> String {
+        value_name(self)
     }
 
     /// Returns the engine of that name.
@@ -112,7 +106,7 @@ impl EngineKind {
 
     /// Returns the record of the engine for a study.
     pub fn record(self) -> EngineRecord {
-        let name = self.name().to_owned();
+        let name = self.name();
         if !self.simulates() {
             return EngineRecord { version: name.clone(), name, settings: toml::Table::new() };
         }
@@ -129,9 +123,9 @@ mod tests {
     #[test]
     fn every_engine_is_recorded_with_its_version_and_settings() {
         for kind in EngineKind::value_variants() {
-            assert_eq!(EngineKind::from_name(kind.name()), Some(*kind));
+            assert_eq!(EngineKind::from_name(&kind.name()), Some(*kind));
             let record = kind.record();
-            assert!(record.version.starts_with(kind.name()), "{record:?}");
+            assert!(record.version.starts_with(&kind.name()), "{record:?}");
             let simulates = kind.simulates();
             assert_eq!(record.settings.contains_key("step_s"), simulates, "{record:?}");
         }

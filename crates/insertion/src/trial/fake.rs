@@ -32,7 +32,7 @@ impl FakeRig {
 }
 
 impl Rig for FakeRig {
-    fn hold<'a>(&'a self, grasp: Grasp<'a>) -> Box<dyn Grasped + 'a> {
+    fn grasp<'a>(&'a self, grasp: Grasp<'a>) -> Box<dyn Grasped + 'a> {
         Box::new((*self, grasp))
     }
 }
@@ -91,7 +91,7 @@ impl Grasped for (FakeRig, Grasp<'_>) {
 pub struct Altered<F>(pub F);
 
 impl<F: Fn(&Grasp, f64, Trial) -> Trial + Send + Sync> Rig for Altered<F> {
-    fn hold<'a>(&'a self, grasp: Grasp<'a>) -> Box<dyn Grasped + 'a> {
+    fn grasp<'a>(&'a self, grasp: Grasp<'a>) -> Box<dyn Grasped + 'a> {
         Box::new((self, grasp))
     }
 }
@@ -99,7 +99,7 @@ impl<F: Fn(&Grasp, f64, Trial) -> Trial + Send + Sync> Rig for Altered<F> {
 impl<F: Fn(&Grasp, f64, Trial) -> Trial + Send + Sync> Grasped for (&Altered<F>, Grasp<'_>) {
     fn run(&self, offset: f64, _: Option<f64>, _: f64) -> Followed {
         let (Altered(alter), grasp) = self;
-        let trial = FakeRig::default().hold(*grasp).trial(offset);
+        let trial = FakeRig::default().grasp(*grasp).trial(offset);
         (alter(grasp, offset, trial), Vec::new())
     }
 }

@@ -105,9 +105,9 @@ impl Grasp<'static> {
     }
 }
 
-/// Prescribed motion that replaces the strategy of the task.
+/// Command that replaces the strategy of the task.
 #[derive(Debug, Clone, Copy)]
-pub enum Course<'a> {
+pub enum Command<'a> {
     /// Commanded trajectories, task frame, all from the same grasp.
     Trajectories(&'a [&'a Trajectory]),
     /// Friction probe on a flat plate that replaces the socket, with its top at z = 0.
@@ -120,7 +120,7 @@ pub type Followed = (Trial, Vec<Sample>);
 /// Setup in which trials are run: one task, one robot, one engine.
 pub trait Rig: Send + Sync {
     /// Grasps the part, once for all offsets.
-    fn hold<'a>(&'a self, grasp: Grasp<'a>) -> Box<dyn Grasped + 'a>;
+    fn grasp<'a>(&'a self, grasp: Grasp<'a>) -> Box<dyn Grasped + 'a>;
 
     /// Returns the trial of a grasp, its start shifted by `offset` metres along y, with its
     /// frames; `None` if the rig does not simulate.
@@ -128,9 +128,9 @@ pub trait Rig: Send + Sync {
         None
     }
 
-    /// Returns the trials of a grasp along a course, sampled every `every_s` seconds from its start: one for
+    /// Returns the trials of a grasp under a command, sampled every `every_s` seconds from its start: one for
     /// each trajectory or probe; empty if the rig does not simulate.
-    fn follow(&self, _grasp: Grasp<'_>, _course: Course<'_>, _every_s: f64) -> Vec<Followed> {
+    fn follow(&self, _grasp: Grasp<'_>, _command: Command<'_>, _every_s: f64) -> Vec<Followed> {
         Vec::new()
     }
 

@@ -1,6 +1,6 @@
 //! Commanded motion of the TCP: straight, minimum-jerk, in simulated time.
 
-use crate::task::duration::SHORTEST_MOVE_S;
+use crate::task::duration::MIN_MOVE_S;
 use contact::scene::Pose;
 use nalgebra::{Translation3, UnitQuaternion, Vector3};
 
@@ -51,7 +51,7 @@ impl Move {
 
     /// Returns a move with a duration, s.
     pub fn with_duration(from: Tcp, to: Tcp, duration: f64) -> Self {
-        Move { from, to, duration: duration.max(SHORTEST_MOVE_S) }
+        Move { from, to, duration: duration.max(MIN_MOVE_S) }
     }
 
     /// Returns the commanded TCP `time` seconds after the start; after the duration, the end of the move.

@@ -3,7 +3,7 @@
 use super::attempt::driven::Driven;
 use super::attempt::{Attempt, Stop};
 use super::record::{Frame, Recorder, Trace};
-use super::{Course, Followed, Grasp, Grasped, Recording, Rig, Trial, cell};
+use super::{Command, Followed, Grasp, Grasped, Recording, Rig, Trial, cell};
 use crate::finger::Finger;
 use crate::outcome::Outcome;
 use crate::robot::{MountedRobot, Robot};
@@ -91,7 +91,7 @@ fn on_plate(task: &Task) -> Task {
 }
 
 impl Rig for EngineRig {
-    fn hold<'a>(&'a self, grasp: Grasp<'a>) -> Box<dyn Grasped + 'a> {
+    fn grasp<'a>(&'a self, grasp: Grasp<'a>) -> Box<dyn Grasped + 'a> {
         Box::new(self.grasp_with_retry(grasp, false))
     }
 
@@ -101,10 +101,10 @@ impl Rig for EngineRig {
         Some(Recording::new(trial, frames))
     }
 
-    fn follow(&self, grasp: Grasp<'_>, course: Course<'_>, every_s: f64) -> Vec<Followed> {
+    fn follow(&self, grasp: Grasp<'_>, command: Command<'_>, every_s: f64) -> Vec<Followed> {
         let attempt = |task: &Task| Attempt::new(&self.robot, task, &*self.engine, grasp);
-        match course {
-            Course::Trajectories(trajectories) => {
+        match command {
+            Command::Trajectories(trajectories) => {
                 let mut held = attempt(&self.task);
                 let grasped = held.grasp();
                 let each = trajectories.iter().map(|trajectory| {
@@ -114,7 +114,7 @@ impl Rig for EngineRig {
                 });
                 each.collect()
             }
-            Course::Probe(probe) => {
+            Command::Probe(probe) => {
                 let mut attempt = attempt(&on_plate(&self.task));
                 let end = attempt.grasp().and_then(|()| attempt.probe(&probe, every_s));
                 vec![attempt.result(end).0]
@@ -227,17 +227,17 @@ mod tests {
 
     fn trial(engine: Box<dyn Engine>) -> Trial {
         let rig = EngineRig::new(task("ket8"), &robot("servo"), engine).unwrap();
-        rig.hold(Grasp::of(&finger(2.6, 45.0))).trial(0.0)
+        rig.grasp(Grasp::of(&finger(2.6, 45.0))).trial(0.0)
     }
 
     #[test]
     fn a_trial_ends_at_once_when_it_is_to_stop() {
         let (rig, stop) = (rig(task("ket8")), AtomicBool::new(true));
         let grasp = Grasp { stop: &stop, ..Grasp::of(&finger(2.6, 45.0)) };
-        let at_once = rig.hold(grasp).trial(0.0);
+        let at_once = rig.grasp(grasp).trial(0.0);
         assert_eq!((at_once.outcome, at_once.simulated_s), (Outcome::Diverged, 0.0));
         stop.store(false, Ordering::SeqCst);
-        let grasped = rig.hold(grasp);
+        let grasped = rig.grasp(grasp);
         stop.store(true, Ordering::SeqCst);
         let after_the_grasp = grasped.trial(0.0);
         assert!(after_the_grasp.simulated_s < 1.5, "nothing but grasp and approach");
@@ -268,7 +268,7 @@ mod tests {
     #[test]
     fn samples_change_nothing_and_end_where_the_trial_ends() {
         let rig = rig(task("ket8"));
-        let grasped = rig.hold(Grasp::of(&finger(2.6, 45.0)));
+        let grasped = rig.grasp(Grasp::of(&finger(2.6, 45.0)));
         let (trial, samples) = grasped.run(0.0, Some(1e-3), 0.0);
         assert_eq!(trial, grasped.trial(0.0));
         let last = samples.last().unwrap();
@@ -304,7 +304,7 @@ mod tests {
     fn a_recorded_trial_is_the_same_trial() {
         let (rig, finger) = (rig(task("ket8")), finger(2.6, 45.0));
         let recording = rig.record(Grasp::of(&finger), 5e-4).unwrap();
-        assert_eq!(recording.trial, rig.hold(Grasp::of(&finger)).trial(5e-4));
+        assert_eq!(recording.trial, rig.grasp(Grasp::of(&finger)).trial(5e-4));
         let frames = &recording.frames;
         let last = frames.last().unwrap();
         assert!(recording.decided_s <= last.time_s, "an outcome that no frame shows");

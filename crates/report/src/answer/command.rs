@@ -165,6 +165,6 @@ fn setup(inputs: &InputArguments) -> Vec<String> {
         words.push(format!("--finger {}", inputs.input(FINGER, FINGERS)));
     }
     let engine = &provenance.engine.name;
-    words.extend((engine != EngineKind::Direct.name()).then(|| format!("--engine {engine}")));
+    words.extend((*engine != EngineKind::Direct.name()).then(|| format!("--engine {engine}")));
     words
 }

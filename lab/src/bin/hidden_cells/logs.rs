@@ -7,7 +7,7 @@ use input::units::MM;
 use insertion::evaluation::evaluator::Specimen;
 use insertion::space::Design;
 use insertion::trial::engine::EngineKind;
-use insertion::trial::{Course, Grasp, Probe, Rig, Sample};
+use insertion::trial::{Command, Grasp, Probe, Rig, Sample};
 use std::path::Path;
 use study::write_file;
 
@@ -44,7 +44,7 @@ pub fn write(
             let (samples, outcome) = match offset_mm {
                 None => (probe(&*rig, grasp)?, "probe".to_owned()),
                 Some(mm) => {
-                    let (trial, samples) = rig.hold(grasp).logged(mm * MM, EVERY_S);
+                    let (trial, samples) = rig.grasp(grasp).logged(mm * MM, EVERY_S);
                     let class = trial.outcome.failure();
                     (samples, class.map_or("inserted".to_owned(), |class| class.to_string()))
                 }
@@ -62,7 +62,7 @@ pub fn write(
 }
 
 fn probe(rig: &dyn Rig, grasp: Grasp<'_>) -> Result<Vec<Sample>, Failure> {
-    let found = rig.follow(grasp, Course::Probe(Probe::DEFAULT), EVERY_S);
+    let found = rig.follow(grasp, Command::Probe(Probe::DEFAULT), EVERY_S);
     let samples = found.into_iter().next().map(|(_, samples)| samples);
     samples.ok_or_else(|| Failure::running("the engine simulates no probe"))
 }

@@ -97,7 +97,7 @@ pub fn run(tasks: &[TaskSettings], designs: &[Measurement], reduced: bool) -> Cr
 fn in_both(subject: &Subject, settings: [&Setting; 2], reduced: bool) -> CrossCheck {
     let reference = settings[0].evaluate(&subject.finger);
     let window = &reference.window;
-    let grasped = settings.map(|setting| setting.rig.hold(Grasp::of(&subject.finger)));
+    let grasped = settings.map(|setting| setting.rig.grasp(Grasp::of(&subject.finger)));
     let trial = |offset: OffsetStep| {
         let trials = grasped.each_ref().map(|grasped| grasped.trial(tolerance::offset(offset)));
         TrialPair {

@@ -11,7 +11,7 @@ use crate::body::{extent, width};
 use facets::Facets;
 use input::units::MM;
 use insertion::task::Solid;
-use insertion::task::geometry::{FLAT, hull, volume};
+use insertion::task::geometry::{MIN_VOLUME, hull, volume};
 use nalgebra::{Point3, Vector3};
 use parry::bounding_volume::{Aabb, BoundingVolume};
 use parry::partitioning::{Bvh, BvhBuildStrategy};
@@ -28,7 +28,7 @@ const LEAST_PIECE: f64 = 0.2 * MM;
 /// Smallest size of a solid along an axis, m.
 const LEAST_SIZE: f64 = 2e-3 * MM;
 /// Smallest volume of a solid, m3, with a margin for the rounding in files.
-const LEAST_VOLUME: f64 = 10.0 * FLAT;
+const LEAST_VOLUME: f64 = 10.0 * MIN_VOLUME;
 /// Width of the border of a polygon behind which faces do not limit the thickness, m.
 const BESIDE: f64 = 5e-3 * MM;
 /// Smallest depth of a face that limits the thickness, m; shallower ones are the polygon's own.

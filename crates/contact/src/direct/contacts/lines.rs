@@ -1,7 +1,7 @@
 //! Ends of the line or face along which a round shape touches another. parry clips the faces of the cores, whatever
 //! the normal: where two edges touch along a line it often finds a single point, anywhere on the line.
 
-use super::patches::NARROW;
+use super::patches::MIN_SPACING;
 use super::{MILLIMETRES, Solid};
 use parry::math as pm;
 use parry::query::details::contact_support_map_support_map_with_params;
@@ -37,7 +37,7 @@ pub(super) fn add_ends(
             turn * relative.rotation,
         );
         let mut simplex = VoronoiSimplex::new();
-        let found = contact_support_map_support_map_with_params(
+        let closest = contact_support_map_support_map_with_params(
             &turned,
             a,
             b,
@@ -45,14 +45,14 @@ pub(super) fn add_ends(
             &mut simplex,
             Some(normal),
         );
-        let GJKResult::ClosestPoints(p1, p2, _) = found else { continue };
+        let GJKResult::ClosestPoints(p1, p2, _) = closest else { continue };
         let p2 = relative * turned.inverse_transform_point(p2);
         let [p1, p2] = [p1 + normal * own, p2 - normal * other];
         let unknown = PackedFeatureId::UNKNOWN;
         let distance = (p2 - p1).dot(normal);
         let p2 = relative.inverse_transform_point(p2);
-        if manifold.points.iter().any(|point| (point.local_p1 - p1).length() < NARROW * MILLIMETRES)
-        {
+        let limit = MIN_SPACING * MILLIMETRES;
+        if manifold.points.iter().any(|point| (point.local_p1 - p1).length() < limit) {
             continue;
         }
         manifold.points.push(TrackedContact::new(p1, p2, unknown, unknown, distance));

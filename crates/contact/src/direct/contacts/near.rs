@@ -97,15 +97,16 @@ impl NearList {
         self.first.len() * self.second.len()
     }
 
-    /// Returns an upper bound of the speed of any point of the second body relative to the first, m/s; approximate if
-    /// the second body's centre of mass is not the origin of its frame.
+    /// Returns an upper bound of the speed of any point of the second body relative to the first, m/s.
     pub fn speed(&self, bodies: &[MovingBody]) -> f64 {
         let [first, second] = [self.bodies.first, self.bodies.second].map(|body| &bodies[body.0]);
         let own = first.velocity - second.velocity;
         let (linear, angular) = (own.fixed_rows::<3>(0).norm(), own.fixed_rows::<3>(3).norm());
         let apart = (first.centre - second.centre).norm();
         let turned = first.velocity.fixed_rows::<3>(3).norm() * apart;
-        linear + turned + angular * self.reach
+        // The velocity is that of the centre of mass; `reach` is about the origin of the frame.
+        let reach = self.reach + (second.centre - second.pose.translation.vector).coords.norm();
+        linear + turned + angular * reach
     }
 
     /// Determines the near pairs again if the bodies have moved by [`MARGIN`]; `relative` is the pose of the second in

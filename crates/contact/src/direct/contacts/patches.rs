@@ -8,17 +8,17 @@ use nalgebra::{Matrix3, Vector3};
 /// Largest number of points of a patch.
 pub(super) const MAX_POINTS: usize = 4;
 /// Cosine of the largest angle between the normals of a patch: 2.6 degrees.
-const ALIKE: f64 = 0.999;
+const MIN_COSINE: f64 = 0.999;
 /// Largest distance of a point from the plane of a patch, divided by its distance from the patch's first point.
-const TILT: f64 = 0.05;
+const MAX_SLOPE: f64 = 0.05;
 /// Largest deviation of the gap from a linear function over the patch, m: the penetration of a contact point by default
 /// under 2.75 N.
-const FLAT: f64 = 5e-6;
+const MAX_ERROR: f64 = 5e-6;
 /// Gaps that differ by less are equal, m.
-const EQUAL: f64 = 2e-6;
+const GAP_TOLERANCE: f64 = 2e-6;
 /// Distance of points from one another, or of a point from the line through two others, below which they are merged, m:
 /// a rounded edge and the face beside it touch a wall at neighbouring points.
-pub(super) const NARROW: f64 = 0.1e-3;
+pub(super) const MIN_SPACING: f64 = 0.1e-3;
 
 /// Joins the manifolds (contact points of one geom pair) that form a patch, and reduces the patch to its extreme
 /// points.
@@ -28,7 +28,7 @@ pub(super) fn join(touches: &mut Vec<Touch>) {
     let mut normals: Vec<Vector3<f64>> =
         manifolds.iter().map(|touches| touches[0].normal).collect();
     let alike = |i: usize, j: usize| {
-        normals[i].dot(&normals[j]) > ALIKE && alike(&manifolds[i][0], &manifolds[j][0])
+        normals[i].dot(&normals[j]) > MIN_COSINE && alike(&manifolds[i][0], &manifolds[j][0])
     };
     let count = manifolds.len();
     if !(0..count).any(|i| (i + 1..count).any(|j| alike(i, j))) {
@@ -38,7 +38,7 @@ pub(super) fn join(touches: &mut Vec<Touch>) {
     let mut patches: Vec<PatchBuilder> = Vec::new();
     for manifold in manifolds {
         let normal = manifold[0].normal;
-        let near = (0..normals.len()).filter(|&i| normals[i].dot(&normal) > ALIKE);
+        let near = (0..normals.len()).filter(|&i| normals[i].dot(&normal) > MIN_COSINE);
         if !{ near }.any(|i| patches[i].try_add(manifold)) {
             normals.push(normal);
             patches.push(PatchBuilder::new(manifold));
@@ -59,7 +59,7 @@ pub(super) fn join(touches: &mut Vec<Touch>) {
 
 /// Returns whether two touches may belong to one patch.
 fn alike(a: &Touch, b: &Touch) -> bool {
-    a.pair == b.pair && a.normal.dot(&b.normal) > ALIKE && a.friction == b.friction
+    a.pair == b.pair && a.normal.dot(&b.normal) > MIN_COSINE && a.friction == b.friction
 }
 
 /// Patch under construction: its touches, sums over them, and a linear fit of their gaps.
@@ -110,7 +110,7 @@ impl Sums {
         let (place, mean) = (self.place / self.count, self.gap / self.count);
         let spread = self.squares - place * self.place.transpose();
         // Regularized: the slope is 0 in directions in which the touches do not extend.
-        let least = Matrix3::from_diagonal_element(1e-6 * spread.trace() + NARROW * FLAT);
+        let least = Matrix3::from_diagonal_element(1e-6 * spread.trace() + MIN_SPACING * MAX_ERROR);
         let slope = (spread + least).try_inverse()? * (self.product - place * self.gap);
         Some(LinearFit { intercept: mean - slope.dot(&place), slope, error: f64::INFINITY })
     }
@@ -139,7 +139,7 @@ impl PatchBuilder {
         let first = &self.touches[0];
         let coplanar = |touch: &Touch| {
             let offset = touch.point - first.point;
-            offset.dot(&first.normal).abs() < FLAT + TILT * offset.norm()
+            offset.dot(&first.normal).abs() < MAX_ERROR + MAX_SLOPE * offset.norm()
         };
         if !alike(first, &manifold[0]) || !manifold.iter().all(coplanar) {
             return false;
@@ -147,7 +147,7 @@ impl PatchBuilder {
         let sums = self.sums.with(first, manifold);
         let Some(fit) = sums.fit() else { return false };
         let new = fit.error_at(first, manifold);
-        if new >= FLAT {
+        if new >= MAX_ERROR {
             return false;
         }
         // With hundreds of touches, all errors for each manifold would take half the computing time; the bound suffices
@@ -155,8 +155,8 @@ impl PatchBuilder {
         let moved = (fit.intercept - self.fit.intercept).abs()
             + (fit.slope - self.fit.slope).norm() * self.sums.reach;
         let bound = self.fit.error + moved;
-        let old = if bound < FLAT { bound } else { fit.error_at(first, &self.touches) };
-        if old >= FLAT {
+        let old = if bound < MAX_ERROR { bound } else { fit.error_at(first, &self.touches) };
+        if old >= MAX_ERROR {
             return false;
         }
         self.touches.extend(manifold);
@@ -175,24 +175,24 @@ pub(super) fn extremes(
     axis: &Vector3<f64>,
 ) -> Vec<usize> {
     let middle = (0..count).map(&place).sum::<Vector3<f64>>() / count as f64;
-    let depth = (0..count).map(&gap).fold(f64::INFINITY, f64::min) + EQUAL;
+    let depth = (0..count).map(&gap).fold(f64::INFINITY, f64::min) + GAP_TOLERANCE;
     let outward = |i: usize| (place(i) - middle).norm_squared();
-    let deepest = best(count, |i| if gap(i) <= depth { outward(i) } else { -1.0 });
-    let far = best(count, |i| (place(i) - place(deepest)).norm_squared());
+    let deepest = argmax(count, |i| if gap(i) <= depth { outward(i) } else { -1.0 });
+    let far = argmax(count, |i| (place(i) - place(deepest)).norm_squared());
     let line = place(far) - place(deepest);
     let length = line.norm();
-    if length < NARROW {
+    if length < MIN_SPACING {
         return vec![deepest];
     }
     let side = |i: usize| line.cross(&(place(i) - place(deepest))).dot(axis) / length;
-    let sides = [best(count, side), best(count, |i| -side(i))];
-    let wide = sides.into_iter().filter(|&i| side(i).abs() >= NARROW);
+    let sides = [argmax(count, side), argmax(count, |i| -side(i))];
+    let wide = sides.into_iter().filter(|&i| side(i).abs() >= MIN_SPACING);
     let mut chosen: Vec<_> = [deepest, far].into_iter().chain(wide).collect();
     chosen.sort_unstable();
     chosen
 }
 
 /// Returns the first index below `count` with the largest value.
-fn best(count: usize, value: impl Fn(usize) -> f64) -> usize {
+fn argmax(count: usize, value: impl Fn(usize) -> f64) -> usize {
     (1..count).fold(0, |best, i| if value(i) > value(best) { i } else { best })
 }

@@ -1,7 +1,7 @@
 //! Detector: reused contact points against newly computed ones, patches, and scenes of many parts.
 
 use super::*;
-use crate::scene::{Body, BodyId, Motion, Shape};
+use crate::scene::{Body, BodyId, Inertia, Motion, Shape};
 use nalgebra::{Translation3, UnitQuaternion};
 
 /// Two cubes of 10 mm, the second at a pose.
@@ -33,7 +33,7 @@ fn reused_points_have_the_gaps_of_new_points() {
     let turned = |x: f64| Vector3::new(x, 0.5e-4, 0.3);
     let start = at(0.0, 0.0, 10.05e-3, turned(1e-4));
     for (pose, along, across) in [
-        (at(3e-6, 2e-6, 10.047e-3, turned(3e-4)), 1e-8, REUSE),
+        (at(3e-6, 2e-6, 10.047e-3, turned(3e-4)), 1e-8, REUSE_DISTANCE),
         (at(30e-6, 2e-6, 10.047e-3, turned(3e-4)), 1e-12, 1e-12),
     ] {
         let mut carried = cubes(start);
@@ -59,6 +59,20 @@ fn boxes_separated_by_a_face_of_one_are_recognized() {
         assert!(!first.apart(second, 0.0));
         assert_eq!([first.separated(second, 0.1e-3), second.separated(first, 0.1e-3)], [apart; 2]);
     }
+}
+
+#[test]
+fn no_point_of_a_body_that_turns_about_a_distant_centre_is_faster_than_the_bound() {
+    let (detector, mut bodies) = cubes(at(0.0, 0.0, 12e-3, Vector3::zeros()));
+    let (centre, moments) = (Point3::new(0.0, 0.0, 50e-3), Vector3::repeat(1e-5));
+    let (name, pose) = (String::new(), bodies[1].pose);
+    let motion = Motion::Free(Inertia { mass: 0.1, centre, moments });
+    bodies[1] = MovingBody::new(&Body { name, motion, pose, geoms: Vec::new() }, None);
+    bodies[1].velocity[3] = 10.0;
+    // The lower edges are 55 mm below the centre and 5 mm beside the axis.
+    let fastest = 10.0 * libm::hypot(55e-3, 5e-3);
+    let bound = detector.lists[0].speed(&bodies);
+    assert!((fastest..1.1 * fastest).contains(&bound), "{bound} m/s of {fastest} m/s");
 }
 
 /// Returns touches of two bodies at points of a plane, given as x, y and gap, each of another geom pair.

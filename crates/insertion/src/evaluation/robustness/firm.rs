@@ -20,7 +20,7 @@ pub struct FirmWindow {
 }
 
 /// Result of the repeats at both ends of a window.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct FirmResult {
     /// Firm window; `None` if every offset on one side fails in some repeat.
     pub window: Option<FirmWindow>,
@@ -29,9 +29,6 @@ pub struct FirmResult {
 }
 
 impl FirmResult {
-    /// Result without a trial, for a window whose nominal start fails.
-    pub const NONE: FirmResult = FirmResult { window: None, trials: 0 };
-
     /// Returns the firm range, mm; 0 without a firm window.
     pub fn range_mm(&self) -> f64 {
         self.window.map_or(0.0, |window| {
@@ -57,11 +54,11 @@ pub fn measure(repeats: &Repeats, window: &Window) -> FirmResult {
         || outermost_step(repeats, -window.negative_steps, -1),
         || outermost_step(repeats, window.positive_steps, 1),
     );
-    let found = negative.zip(positive).map(|(negative, positive)| FirmWindow {
+    let window = negative.zip(positive).map(|(negative, positive)| FirmWindow {
         negative_steps: -negative,
         positive_steps: positive,
     });
-    FirmResult { window: found, trials: below + above }
+    FirmResult { window, trials: below + above }
 }
 
 /// Returns the outermost of the grid steps `from` to 0, in the direction `sign`, at which all repeats insert, and the

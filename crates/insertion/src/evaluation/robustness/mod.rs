@@ -93,7 +93,7 @@ pub fn evaluate(
 fn success_rate(drawn: &[Insertion], confidence: f64, race: Option<&Race>) -> SuccessRate {
     race::run(drawn.len() as u32, confidence, race, |draw| {
         let (rig, grasp, offset) = drawn[draw as usize];
-        rig.hold(grasp).trial(offset).outcome
+        rig.grasp(grasp).trial(offset).outcome
     })
 }
 
@@ -101,11 +101,11 @@ fn success_rate(drawn: &[Insertion], confidence: f64, race: Option<&Race>) -> Su
 fn robust_range(drawn: &[Insertion], settings: &RobustSettings) -> RobustRange {
     let window =
         |&(rig, grasp, _): &Insertion| tolerance::evaluate_grasp(rig, grasp, settings.search);
-    let found: Vec<Evaluation> = drawn.par_iter().map(window).collect();
-    let valid = found.iter().filter(|draw| draw.window.nominal != Outcome::Diverged);
+    let windows: Vec<Evaluation> = drawn.par_iter().map(window).collect();
+    let valid = windows.iter().filter(|draw| draw.window.nominal != Outcome::Diverged);
     let ranges_mm: Vec<f64> = valid.map(|draw| draw.window.range_mm()).collect();
-    let diverged = (found.len() - ranges_mm.len()) as u32;
-    let trials = found.iter().map(|draw| draw.trials).sum();
+    let diverged = (windows.len() - ranges_mm.len()) as u32;
+    let trials = windows.iter().map(|draw| draw.trials).sum();
     let mut robust = RobustRange { ranges_mm, diverged, trials, value_mm: None };
     robust.value_mm = statistic(&robust, settings.statistic);
     robust
@@ -119,8 +119,8 @@ fn statistic(robust: &RobustRange, statistic: Statistic) -> Option<f64> {
     }
     Some(match statistic {
         Statistic::MeanMinusSd(factor) => robust.mean_mm() - factor * robust.sd_mm(),
-        Statistic::LowerTail(share) => {
-            let tail = ((share * count as f64).round() as usize).max(1);
+        Statistic::LowerTail(level) => {
+            let tail = ((level * count as f64).round() as usize).max(1);
             mean(&sorted(robust.ranges_mm.iter().copied())[..tail])?
         }
     })

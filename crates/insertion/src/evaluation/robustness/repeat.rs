@@ -38,7 +38,7 @@ impl<'a> Repeats<'a> {
             let [friction_finger, friction_socket] = [(); 2].map(|()| 1.0 + around(FRICTION_SHARE));
             let conditions = Conditions { friction_finger, friction_socket, ..Conditions::NOMINAL };
             let rig = rigs[index as usize % rigs.len()];
-            (rig.hold(Grasp { conditions, ..grasp }), around(START_SHIFT))
+            (rig.grasp(Grasp { conditions, ..grasp }), around(START_SHIFT))
         };
         Repeats { runs: (0..count).into_par_iter().map(run).collect(), stop: grasp.stop }
     }

@@ -21,7 +21,6 @@ use crate::space::{DENSITY_KEY, DIRECTION_KEY, Design};
 use crate::surrogate::Prediction;
 use crate::task::Task;
 use crate::trial::run::RigError;
-use finray::FingerError;
 use input::numbers::{DESIGN, NumberFile};
 use input::{Document, InputError, Place, Placed};
 use parameters::Path;
@@ -39,12 +38,9 @@ pub struct Template {
 /// Error of a design that cannot be simulated.
 #[derive(Debug, thiserror::Error)]
 pub enum DesignError {
-    /// An unknown path or a value out of range.
+    /// An unknown path, a value out of range, or a finger that cannot be printed or modelled.
     #[error(transparent)]
     Value(#[from] InputError),
-    /// A finger that cannot be printed or modelled.
-    #[error(transparent)]
-    Finger(#[from] FingerError),
     /// A task that the robot or the engine does not support.
     #[error(transparent)]
     Rig(#[from] RigError),
@@ -54,7 +50,6 @@ impl Placed for DesignError {
     fn place(&self) -> Place {
         match self {
             DesignError::Value(error) => error.place(),
-            DesignError::Finger(error) => error.place(),
             DesignError::Rig(_) => Place::default(),
         }
     }

@@ -233,7 +233,7 @@ impl RawRobust {
     fn settings(&self, check: Check<'_>) -> Result<RobustSettings, InputError> {
         let statistic = match (self.statistic, self.sd_factor, self.tail) {
             (RawStatistic::MeanMinusSd, Some(factor), None) => Ok(Statistic::MeanMinusSd(factor)),
-            (RawStatistic::LowerTail, None, Some(share)) => Ok(Statistic::LowerTail(share)),
+            (RawStatistic::LowerTail, None, Some(level)) => Ok(Statistic::LowerTail(level)),
             (RawStatistic::MeanMinusSd, ..) => {
                 Err("\"mean-minus-sd\" requires sd_factor and excludes tail_percent")
             }

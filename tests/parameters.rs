@@ -67,21 +67,22 @@ fn every_number_of_finger_and_robot_can_be_a_row_of_a_cell() {
              value = {high:?}\nsd = 0.1\nlow = {low:?}\nhigh = {high:?}\nshared = true\nsource = \"test\"\n"
         )
     };
-    let evaluate = |name: &str, row: String| {
+    let trial = |name: &str, row: String| {
         let file = studies.file(name, format!("{CELL}{row}"));
-        optimize_line(&format!("{EVALUATE} --cell {file} --json"))
+        let trial = EVALUATE.replace("evaluate", "trial");
+        optimize_line(&format!("{trial} --cell {file} --json"))
     };
-    let range = |text: String| evaluate("cell.toml", text).json()["peak_force_n"].as_f64().unwrap();
-    let own = range(String::new());
+    let force = |text: String| trial("cell.toml", text).json()["peak_force_n"].as_f64().unwrap();
+    let own = force(String::new());
     for (path, transform, low, high) in [
         ("finger.mass_g", "value", 1.0, 200.0),
         ("robot.mass_kg", "factor", 0.5, 4.0),
         ("robot.damping_ratio", "value", 0.5, 4.0),
     ] {
-        assert_ne!(range(row(path, transform, low, high)), own, "{path}");
+        assert_ne!(force(row(path, transform, low, high)), own, "{path}");
     }
-    evaluate("shift.toml", row("finger.mass_g", "shift", 1.0, 2.0)).fails(2, &["stays above 0"]);
-    evaluate("low.toml", row("finger.mass_g", "value", -1.0, 2.0)).fails(2, &["must lie in 1e-9"]);
-    evaluate("error.toml", row("cell.clearance_mm", "shift", 0.1, 0.2))
+    trial("shift.toml", row("finger.mass_g", "shift", 1.0, 2.0)).fails(2, &["stays above 0"]);
+    trial("low.toml", row("finger.mass_g", "value", -1.0, 2.0)).fails(2, &["must lie in 1e-9"]);
+    trial("error.toml", row("cell.clearance_mm", "shift", 0.1, 0.2))
         .fails(2, &["`cell.clearance_mm` cannot be set by a cell"]);
 }

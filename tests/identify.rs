@@ -42,10 +42,10 @@ fn what_was_hidden_is_found_and_goes_into_every_command() {
     assert_eq!(optimize_line(&format!("{identify} {again} --seed 0")).json(), found);
     assert_eq!(folder.read("again.toml"), folder.read("cell.toml"));
 
-    let evaluate = format!("evaluate --task usb --density 20 --direction 10 --json --cell {cell}");
-    let with = optimize_line(&evaluate).json();
+    let trial = format!("trial --task usb --density 20 --direction 10 --json --cell {cell}");
+    let with = optimize_line(&trial).json();
     assert_eq!(with["cell"], "cell");
-    optimize_line(&format!("{evaluate} --robot servo")).fails(2, &["--cell contains a robot"]);
+    optimize_line(&format!("{trial} --robot servo")).fails(2, &["--cell contains a robot"]);
 }
 
 #[test]

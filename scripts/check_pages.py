@@ -87,6 +87,8 @@ def check_map(page, where):
           const about = getComputedStyle(cell).fill;
           return Math.max(contrast(halo, about), contrast(ring, about)); }})); }})()""")
     check(contrast >= 3, f"{where}: the recommended mark has a contrast of {contrast:.1f} to 1")
+    check(page.js('document.querySelector("#designs").scrollWidth <= document.querySelector("#designs").clientWidth'),
+          f"{where}: the table of designs is wider than the screen")
     page.hover("#surface .mark:not(.best) .core")
     tip = page.js('document.querySelector("#tip").hidden ? "" : document.querySelector("#tip").textContent')
     check("evaluation" in tip and "infill density" in tip, f"{where}: the tooltip is {tip!r}")

@@ -33,6 +33,10 @@ pub mod cost {
     pub const SIMULATION: f64 = 1.2;
     /// A calibration with one finger left out, to validate a bench prediction.
     pub const FOLD: f64 = 4.0;
+    /// The one-at-a-time sensitivity analysis (levers) of a finger.
+    pub const LEVERS: f64 = 36.0;
+    /// A capture map of the largest number of trials.
+    pub const MAP: f64 = 18.0;
 }
 
 /// Interval between two lines if standard error is not a terminal.

@@ -223,6 +223,12 @@ fn progress_goes_to_standard_error_unless_quiet() {
     assert!(loud.stderr.contains("8/8 evaluations, best "), "{}", loud.stderr);
     assert_eq!(loud.json()["evaluations"], 8);
     assert_eq!(studies.study("quiet", 8, &[]).stderr, "");
+    for (analysis, parts) in
+        [("levers", "windows of the levers: "), ("map", "trials of the map y,x: ")]
+    {
+        let loud = fake(&format!("{analysis} --task usb --density 20 --direction 10"));
+        assert!(loud.stderr.contains(parts), "{}", loud.stderr);
+    }
 }
 
 #[test]

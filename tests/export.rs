@@ -3,9 +3,11 @@
 
 use crate::common::{Studies, optimize_line, read};
 use finray::export::prism::Prism;
+use finray::export::sheet::{self, SheetData};
 use finray::export::slicer;
 use finray::geometry::Geometry;
 use finray::infill::InfillDesign;
+use finray::mechanics;
 use finray::printed::PrintedFinger;
 use nalgebra::Matrix3;
 use std::collections::BTreeMap;
@@ -121,6 +123,13 @@ fn a_3mf_for_orcaslicer_names_the_parts_of_its_model() {
         assert!(prusa.contains(&format!("\n{prusa_key} = {}\n", value(key))), "{key}");
     }
     assert!(!text.contains("PrusaSlicer"), "OrcaSlicer would drop the settings");
+    let ribs = &mechanics::compute(&geometry).unwrap();
+    let sheet = sheet::svg(&geometry, &SheetData { origin: "", ribs, measured: None });
+    let [density, angle] = ["sparse_infill_density", "infill_direction"].map(value);
+    let [walls, wall] = ["wall_loops", "inner_wall_line_width"].map(value);
+    for set in [format!("{density}, {angle}° from X"), format!("walls {walls} × {wall}<")] {
+        assert!(sheet.contains(&set), "{set}");
+    }
 }
 
 #[test]

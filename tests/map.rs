@@ -20,7 +20,7 @@ fn finger() -> Finger {
 
 fn map(rig: &EngineRig) -> CaptureMap {
     let plane = Plane::new(rig, Grasp::of(&finger()), Axes::YX);
-    CaptureMap::trace(&rig.task.name, Design::default(), &plane)
+    CaptureMap::trace(&rig.task.name, Design::default(), &plane, &|| ())
 }
 
 fn inserts(map: &CaptureMap, [y, x]: [f64; 2]) -> bool {

@@ -66,6 +66,8 @@ class AsGood(Result):
     """Ties: designs within ``within_mm`` of the recommended one, ``designs`` in number ``of`` all evaluated."""
 
     within_mm: float
+    #: The ties and what others lose, in words.
+    sentence: str
     designs: int
     of: int
     #: Share of the space that is nearer to a tie than to any other evaluated design, 0 to 1.

@@ -274,7 +274,7 @@ impl AskTellStudy {
         let ended = ended.map_err(exception)?;
         let unusable = ended.unusable.as_ref().map(ToString::to_string);
         let answer = Answer::of(&ended.record);
-        let analyse = |stop: &AtomicBool| ended.analyse(&answer, stop);
+        let analyse = |stop: &AtomicBool| ended.analyse(&answer, &Context::silent(stop));
         let analyses = interruptible(py, analyse)?.map_err(exception)?;
         let text = match self.format.json {
             true => summary(&ended, &answer, &analyses).to_string() + "\n",

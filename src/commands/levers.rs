@@ -1,9 +1,10 @@
 //! `optimize levers`: one-at-a-time sensitivity of the range.
 
 use crate::command::{self, Output};
-use crate::context::{Context, not_stopped};
+use crate::context::Context;
 use crate::failure::Failure;
 use crate::layout;
+use crate::progress::{Part, cost};
 use crate::setup::Setup;
 use crate::setup::finger::FingerRequest;
 use crate::setup::request::SetupRequest;
@@ -13,7 +14,6 @@ use insertion::space::Design;
 use insertion::surrogate::Prediction;
 use report::levers as output;
 use std::path::PathBuf;
-use std::sync::atomic::AtomicBool;
 
 /// Compare the infill with other ways to widen the window: tilt, strokes, grip, friction, robot
 #[derive(Debug, Clone, Default, clap::Args)]
@@ -38,12 +38,12 @@ impl command::Request for Request {
 
     /// Simulates the levers, and for comparison the softest and the stiffest infill of the space.
     fn run(&self, context: &Context<'_>) -> Result<Output, Failure> {
-        let _busy = context.busy("measuring the levers");
+        context.begin(cost::LEVERS);
         let setup = self.setup.setup()?;
         let chosen = self.finger.choose(&setup)?;
         let given = chosen.given.then_some(chosen.specimen.stiffness);
         let finger = (&chosen.design, given);
-        let levers = levers(&setup, finger, None, context.stop)?;
+        let levers = levers(&setup, finger, None, context)?;
         let (svg, text) = (output::svg(&levers)?, layout::wrapped(&output::text(&levers)));
         Output::new(text, levers_json(&levers)).drawn(svg, self.svg.as_ref())
     }
@@ -55,11 +55,16 @@ pub(crate) fn levers(
     setup: &Setup,
     (design, given): (&Design, Option<Prediction>),
     infill: Option<[f64; 2]>,
-    stop: &AtomicBool,
+    context: &Context<'_>,
 ) -> Result<Levers, Failure> {
     let (evaluator, template) = (&setup.evaluator, setup.only_task()?);
-    let analysis = LeverAnalysis { evaluator, template, space: &setup.space, design, given };
-    let levers = analysis.levers(infill, stop).map_err(Failure::input)?;
-    not_stopped(stop)?;
+    let done = |[done, of]: [usize; 2]| {
+        let cost = cost::LEVERS / of as f64;
+        context.part(&Part { what: "windows of the levers".to_owned(), done, of, cost });
+    };
+    let space = &setup.space;
+    let analysis = LeverAnalysis { evaluator, template, space, design, given, done: &done };
+    let levers = analysis.levers(infill, context.stop).map_err(Failure::input)?;
+    context.check()?;
     Ok(levers)
 }

@@ -1,20 +1,23 @@
 //! `optimize map`: outcomes of insertions over two errors of the start.
 
 use crate::command::{self, Output};
-use crate::context::{Context, not_stopped};
+use crate::context::Context;
 use crate::failure::Failure;
 use crate::layout;
+use crate::progress::{Part, cost};
 use crate::setup::Setup;
 use crate::setup::finger::{ChosenFinger, FingerRequest};
 use crate::setup::request::SetupRequest;
 use analysis::map::{Axes, CaptureMap, Plane};
+use clap::ValueEnum;
 use insertion::evaluation::OffsetStep;
 use insertion::evaluation::evaluator::Specimen;
 use insertion::space::Design;
 use insertion::trial::Grasp;
+use parameters::plan::grid::MAX_TRIALS;
 use serde::Serialize;
 use std::path::PathBuf;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Trace the capture map of one finger
 ///
@@ -56,12 +59,12 @@ impl command::Request for Request {
 
     fn run(&self, context: &Context<'_>) -> Result<Output, Failure> {
         let stop = context.stop;
-        let _busy = context.busy("tracing the map");
+        context.begin(cost::MAP);
         let setup = self.setup.setup()?;
         let chosen = self.finger.choose(&setup)?;
         let taught = setup.evaluator.taught(&chosen.specimen, stop).map_err(Failure::input)?;
         let finger = (&chosen.specimen, &chosen.design);
-        let map = map_of(&setup, finger, taught, self.axes, stop)?;
+        let map = map_of(&setup, finger, taught, self.axes, context)?;
         let svg = report::map::svg(&map)?;
         let value = Mapped { chosen, map };
         let text = layout::wrapped(&value.text()) + &layout::wrote(&self.svg);
@@ -69,22 +72,41 @@ impl command::Request for Request {
     }
 }
 
+/// Number of trials that are one part of the progress: a single one can be as short as a result from the cache.
+const TOGETHER: usize = 10;
+
 /// Traces the capture map of `specimen`, which has the given design. It is centred on the taught start, if any.
 ///
 /// # Errors
-/// If task, robot and finger cannot be simulated; if `stop` is set meanwhile.
+/// If task, robot and finger cannot be simulated; if it is cancelled meanwhile.
 pub(crate) fn map_of(
     setup: &Setup,
     (specimen, design): (&Specimen, &Design),
     taught: Option<OffsetStep>,
     axes: Axes,
-    stop: &AtomicBool,
+    context: &Context<'_>,
 ) -> Result<CaptureMap, Failure> {
     let rig = setup.evaluator.rig(specimen, taught, 1.0).map_err(Failure::input)?;
-    let grasp = Grasp { stop, ..Grasp::of(&specimen.finger) };
+    let grasp = Grasp { stop: context.stop, ..Grasp::of(&specimen.finger) };
     let plane = Plane::new(&*rig, grasp, axes);
-    let map = CaptureMap::trace(&specimen.task.name, design.clone(), &plane);
-    not_stopped(stop)?;
+    let axes = axes.to_possible_value();
+    let what = axes.map_or(String::new(), |axes| format!("trials of the map {}", axes.get_name()));
+    let part = |[done, of]: [usize; 2], trials: usize| {
+        let cost = cost::MAP * trials as f64 / MAX_TRIALS as f64;
+        context.part(&Part { what: what.clone(), done, of, cost });
+    };
+    let count = AtomicUsize::new(0);
+    let done = || {
+        let done = count.fetch_add(1, Ordering::Relaxed) + 1;
+        if done.is_multiple_of(TOGETHER) {
+            part([done, MAX_TRIALS], TOGETHER);
+        }
+    };
+    let map = CaptureMap::trace(&specimen.task.name, design.clone(), &plane, &done);
+    if map.trials < MAX_TRIALS {
+        part([map.trials; 2], MAX_TRIALS - map.trials / TOGETHER * TOGETHER);
+    }
+    context.check()?;
     Ok(map)
 }
 

@@ -5,8 +5,9 @@ use super::open::Ended;
 use super::report;
 use crate::commands::levers::levers;
 use crate::commands::map::map_of;
-use crate::context::not_stopped;
+use crate::context::{Context, not_stopped};
 use crate::failure::Failure;
+use crate::progress::cost;
 use crate::setup::Setup;
 use crate::setup::files::robot;
 use crate::setup::robots::stiffness_and_lag;
@@ -85,17 +86,25 @@ impl Ended {
     /// Computes the missing analyses of the recommended finger, stores them and updates the page.
     ///
     /// # Errors
-    /// If the finger cannot be simulated or a file cannot be written; if `stop` is set meanwhile.
-    pub fn analyse(&self, answer: &Answer, stop: &AtomicBool) -> Result<PostAnalysis, Failure> {
+    /// If the finger cannot be simulated or a file cannot be written; if it is cancelled meanwhile.
+    pub fn analyse(&self, answer: &Answer, context: &Context<'_>) -> Result<PostAnalysis, Failure> {
+        let stop = context.stop;
         let (dir, record) = (&self.dir, answer.record);
         let mut found = read(dir, answer);
         let Some(subject) = Subject::of(answer) else { return Ok(found) };
         let levers_missing = found.levers.is_none() && !self.run.no_levers;
         let maps_missing = found.maps.is_empty() && !self.run.no_map;
         let robots_missing = found.robots.is_empty() && own_task(record);
-        if !levers_missing && !maps_missing && !robots_missing {
+        let costs = [
+            (levers_missing, cost::LEVERS),
+            (maps_missing, MAPPED.len() as f64 * cost::MAP),
+            (robots_missing, cost::WALKED),
+        ];
+        let costs = costs.iter().filter(|(missing, _)| *missing).map(|(_, cost)| cost);
+        if costs.clone().count() == 0 {
             return Ok(found);
         }
+        context.begin(costs.sum());
         let engine = &subject.provenance.engine.name;
         let setup = Setup::from_inputs(&record.inputs(dir)?, engine)?;
         let design = &subject.design;
@@ -105,13 +114,13 @@ impl Ended {
         self.run.pool()?.install(|| {
             if levers_missing {
                 let span = answer.spread_mm;
-                let levers = levers(&setup, (design, None), span, stop)?;
+                let levers = levers(&setup, (design, None), span, context)?;
                 subject.write(dir, LEVERS, &levers)?;
                 found.levers = Some(levers);
             }
             if maps_missing {
                 let taught = setup.evaluator.taught(specimen, stop).map_err(Failure::input)?;
-                let map = |axes| map_of(&setup, (specimen, design), taught, axes, stop);
+                let map = |axes| map_of(&setup, (specimen, design), taught, axes, context);
                 found.maps = MAPPED.into_iter().map(map).collect::<Result<_, _>>()?;
                 subject.write(dir, MAPS, &found.maps)?;
             }

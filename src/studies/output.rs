@@ -25,10 +25,7 @@ pub fn run(open: OpenStudy, context: &Context<'_>, all: bool) -> Result<Output, 
     let answer = Answer::of(&ended.record);
     context.print(&text::ended(&ended, &answer, all))?;
     // The answer does not depend on the analyses.
-    let busy = context.busy("levers and maps of the finger");
-    let analysed = ended.analyse(&answer, context.stop);
-    drop(busy);
-    let (found, failure) = match analysed {
+    let (found, failure) = match ended.analyse(&answer, context) {
         Ok(found) => (found, None),
         Err(failure) => (PostAnalysis::default(), Some(failure)),
     };

@@ -139,7 +139,7 @@ pub fn advice(answer: &Answer, dir: &Path) -> Value {
     let (command, why) = command::next(answer, dir);
     json!({
         "verdict": answer.verdict.key(),
-        "headline": answer.verdict.headline(),
+        "headline": answer.headline(),
         "expectation": expectation(answer),
         "finger": answer.verdict.finger(),
         "force": force(answer),
@@ -205,6 +205,7 @@ fn equivalent(answer: &Answer, as_good: &Ties) -> Value {
     });
     json!({
         "within_mm": answer.record.config.indifference_mm,
+        "sentence": lines::tied(answer, as_good).1,
         "designs": as_good.designs.len(),
         "of": answer.designs,
         "share_of_space": as_good.share,

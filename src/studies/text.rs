@@ -27,7 +27,7 @@ pub fn analyses(PostAnalysis { levers, robots, .. }: &PostAnalysis) -> String {
 fn answer_text(answer: &Answer, dir: &Path, verbose: &str) -> String {
     // First, since the following lines may recommend printing the finger.
     let mut text = layout::lines(lines::force(answer));
-    text += &format!("{}\n{}\n", answer.verdict.headline(), expectation(answer));
+    text += &format!("{}\n{}\n", answer.headline(), expectation(answer));
     text += &layout::lines(lines::brief(answer));
     text += verbose;
     // Not wrapped, so that it can be copied.

@@ -1,7 +1,7 @@
 //! Predicted ranges of the fingers on the bench, the user's robot.
 
 use super::elements::table;
-use crate::answer::words::{design, interval, mm};
+use crate::answer::words::{design, interval, mm, others};
 use insertion::outcome::FailureClass;
 use maud::{Markup, html};
 use study::{BenchFinger, StudyRecord};
@@ -12,11 +12,13 @@ const TABLE: &str = "bench_predictions.csv";
 /// Returns the section; `None` without measurements.
 pub(super) fn section(record: &StudyRecord) -> Option<Markup> {
     let found = record.on_bench.as_ref()?;
+    let others = others(found.best.iter().map(|one| one.probability_best), found.fingers);
     Some(html! {
         (table(
             &["finger", "range on the bench", "80 % interval", "probability of the best", "fails below | above"],
             found.best.iter().map(row),
         ))
+        @if let Some(words) = others { p { "Probability of the best: " (words) "." } }
         p {
             "From " (found.effort.simulations) " simulations with drawn friction, preload, robot and print, and the \
             measurements; the error of the emulator (a Gaussian process) on further simulations is "

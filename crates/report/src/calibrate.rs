@@ -1,7 +1,7 @@
 //! Text output of `optimize calibrate`: predicted ranges on the user's robot (bench) and posteriors of the parameters.
 
 use super::text_table;
-use crate::answer::words::design;
+use crate::answer::words::{design, others};
 use calibration::calibrate::{Calibration, TaskResult};
 use calibration::predict::INTERVAL;
 use calibration::subject::Subject;
@@ -31,7 +31,8 @@ pub fn text(subject: &Subject, result: &TaskResult) -> String {
             100.0 * INTERVAL
         );
     }
-    let best = by_range(result).into_iter().take(LISTED).map(|one| {
+    let best = || by_range(result).into_iter().take(LISTED);
+    let rows = best().map(|one| {
         [
             design(&one.design),
             format!("{:.1}", one.range_mm),
@@ -41,7 +42,9 @@ pub fn text(subject: &Subject, result: &TaskResult) -> String {
         ]
     });
     let head = ["best on the bench", "range mm", "80 % interval", "is the best", "simulated"];
-    text += &text_table(1, head, best);
+    text += &text_table(1, head, rows);
+    let others = others(best().map(|one| one.probability_best), result.predictions.len());
+    text.extend(others.map(|words| format!("is the best: {words}\n")));
     text.extend(warnings(subject, result).iter().map(|words| format!("warning: {words}\n")));
     text
 }

@@ -11,7 +11,7 @@ use crate::answer::words::{settled, volume_unit};
 use insertion::evaluation::objective::Measure;
 use maud::Markup;
 use plotters::prelude::*;
-use study::{Recorded, StudyRecord, volume};
+use study::{Recorded, StudyRecord, Walked, volume};
 
 /// Plots the value of each evaluation and the best so far (with several objectives the hypervolume) against the index
 /// of the evaluation; `size` is width and height, pixels.
@@ -22,21 +22,39 @@ pub fn svg(record: &StudyRecord, size: (u32, u32)) -> Result<String, ReportError
 pub(super) fn section(record: &StudyRecord, size: (u32, u32)) -> Result<Markup, ReportError> {
     let caption = match record.config.objective.single() {
         Some(Measure::Range | Measure::CentredRange) => {
-            "Value of each evaluation, and the best so far. Values are multiples of 0.1 mm."
+            "Value of each evaluation, and the best of the search so far. Values are multiples of 0.1 mm."
         }
-        Some(_) => "Value of each evaluation, and the best so far.",
+        Some(_) => "Value of each evaluation, and the best of the search so far.",
         None => {
             "Hypervolume of the front after each evaluation, from the reference stated with the \
              front."
         }
     };
     let settled = record.settled.then(|| format!(" Settled {}.", settled(record)));
-    let confirmed = (!record.walked.is_empty() && record.config.objective.single().is_some())
-        .then_some(" Confirmed: walked step by step.");
     let note = note(record).map(|note| format!(" {note}"));
-    let more = [settled, confirmed.map(str::to_owned), note].into_iter().flatten();
+    let more = [settled, difference(record), note].into_iter().flatten();
     let caption = more.fold(caption.to_owned(), |caption, more| caption + &more);
     Ok(figure(&svg(record, size)?, "best value against evaluations", &caption))
+}
+
+/// Returns index of the evaluation and firm value of each walked design, the recommended one first.
+fn confirmed(record: &StudyRecord) -> Vec<(f64, f64)> {
+    let firm = |walked: &Walked| {
+        let index = walked.recorded.index;
+        Some((index as f64, *record.firm_values.get(&index)?))
+    };
+    record.walked.iter().filter_map(firm).collect()
+}
+
+/// Returns the difference between the best confirmed value and the best of the search, as sentences.
+fn difference(record: &StudyRecord) -> Option<String> {
+    let measure = record.config.objective.single()?;
+    let [firm, searched] = [confirmed(record).first()?.1, best_so_far(record).last()?.1];
+    let [firm, searched] = [firm, searched].map(|value| measure.show(value));
+    Some(format!(
+        " Confirmed: walked step by step and repeated; the best has {firm}. The line ends at \
+         {searched}, the best of the search."
+    ))
 }
 
 /// Returns index of the evaluation and best feasible value so far, from the first feasible evaluation on; with several
@@ -68,8 +86,7 @@ fn draw(area: &Area<'_>, record: &StudyRecord) -> DrawResult {
         Some(_) => record.evaluations.iter().filter_map(Recorded::value).collect(),
         None => best.iter().map(|b| b.1).collect(),
     };
-    let confirmed: Vec<(f64, f64)> =
-        record.walked.iter().filter_map(|walked| at(&walked.recorded)).collect();
+    let confirmed = confirmed(record);
     let shown = values.iter().chain(confirmed.iter().map(|(_, value)| value));
     let mut range = padded_range(shown.copied().chain([0.0]), 0.12);
     if values.iter().all(|&value| value >= 0.0) {
@@ -79,7 +96,7 @@ fn draw(area: &Area<'_>, record: &StudyRecord) -> DrawResult {
     let last = count.max(2) as f64 - 1.0;
     let x = ("evaluation", -0.02 * last..1.02 * last);
     let (y_label, name) = match objectives.single() {
-        Some(measure) => (measure.label(), "best so far"),
+        Some(measure) => (measure.label(), "best of the search"),
         None => (format!("hypervolume ({})", volume_unit(objectives)), "hypervolume so far"),
     };
     if count == 0 {

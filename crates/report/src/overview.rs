@@ -22,11 +22,12 @@ pub(super) fn screen(answer: &Answer, files: &PageFiles) -> Markup {
         header {
             p.muted { (lines::searched(answer)) " · " (answer.record.config.robot) }
             @if let Some((_, text)) = lines::force(answer) { p.warn { "Force: " (text) "." } }
-            h1 { (answer.verdict.headline()) }
+            h1 { (answer.headline()) }
             p.lead {
                 (explained(&expectation(answer))) ". "
                 @if answer.verdict.finger().is_some() { span.trust { (answer.trust.label()) } }
             }
+            @if let Some((_, text)) = lines::region(answer) { p.muted { "Ties: " (text) "." } }
             // With measurements the finger is chosen by predictions for the bench.
             @if let Some((_, text)) = lines::widest(answer).filter(|_| answer.record.on_bench.is_none()) {
                 p.muted { "Widest in the search: " (explained(&text)) "." }

@@ -39,7 +39,7 @@ pub fn card(answer: &Answer, dir: &Path) -> String {
     let (command, why) = command::next(answer, dir);
     let card = html! {
         div.finger-opt {
-            h3 { (answer.verdict.headline()) }
+            h3 { (answer.headline()) }
             p { (expectation(answer)) " (" (answer.trust.label()) ")" }
             (definitions(&lines::brief(answer)))
             p { code { (command) } br; (why) }

@@ -18,7 +18,7 @@ use serde_json::json;
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::OnceLock;
-use study::{Provenance, Recorded, Segment, StudyConfig, StudyRecord, Timing};
+use study::{Provenance, Recorded, Segment, StudyConfig, StudyRecord, Timing, Walked};
 
 fn finray9() -> PrintedFinger {
     PrintedFinger::parse(FINGERS[0].text, FINGERS[0].file).unwrap()
@@ -37,7 +37,7 @@ fn record(evaluations: Vec<Recorded>) -> StudyRecord {
     let provenance = Provenance::new(EngineKind::Direct, hashes);
     let fixture = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/fixtures/study");
     let fixture = StudyRecord::load(&fixture).unwrap();
-    let (seed, budget) = (7, 200);
+    let (seed, budget) = (7, evaluations.len() as u64);
     let config =
         StudyConfig { seed, budget, provenance: provenance.clone(), ..fixture.config.clone() };
     let segments = vec![Segment { first: 0, provenance }];
@@ -142,6 +142,39 @@ fn the_page_is_whole_and_its_numbers_are_the_records() {
     assert_eq!(html.matches("<div role=\"img\"").count(), 2, "the finger and the convergence");
     assert_eq!(html.matches("<script").count(), 2, "the data and what shows it");
     assert!(html.contains("default-src 'none'"));
+}
+
+#[test]
+fn an_unfinished_study_is_told_and_continued() {
+    let mut study = study();
+    let told = |study: &StudyRecord| {
+        let html = whole(study);
+        let told = html.contains(" (unfinished, after 60 of 200 evaluations)</h1>");
+        assert_eq!(html.contains("<pre><code>optimize resume"), told);
+        told
+    };
+    assert!(!told(&study));
+    study.config.budget = 200;
+    assert!(told(&study));
+    study.settled = true;
+    assert!(!told(&study));
+}
+
+#[test]
+fn the_convergence_ends_at_the_search_and_marks_the_confirmed_value() {
+    let mut study = study();
+    let best = study.best().unwrap().clone();
+    let (index, searched) = (best.index, words::mm(best.value().unwrap()));
+    study.walked = vec![Walked { recorded: best, firm: Vec::new(), by_ribs: None }];
+    let mut drawn = |firm_mm: f64| {
+        study.firm_values.insert(index, firm_mm);
+        let text = convergence::section(&study, (356, 300)).unwrap().into_string();
+        let words =
+            format!("the best has {firm_mm:.1} mm. The line ends at {searched}, the best of");
+        assert!(text.contains(&words), "{text}");
+        convergence_svg(&study, (356, 300)).unwrap()
+    };
+    assert_ne!(drawn(2.0), drawn(3.0));
 }
 
 #[test]
@@ -262,7 +295,7 @@ fn convergence_never_falls_and_ends_at_the_best() {
     let fact = format!("\"best\":{}", best.index);
     assert!(html(&study).contains(&fact), "{fact}");
     let svg = convergence_svg(&study, (880, 480)).unwrap();
-    for word in ["best so far", "range (mm)", "each evaluation"] {
+    for word in ["best of the search", "range (mm)", "each evaluation"] {
         assert!(svg.contains(word), "{word}");
     }
 }
@@ -323,7 +356,7 @@ fn the_command_that_repeats_a_study_names_all_that_decides() {
         command,
         "optimize --task usb,inputs/task_2.toml --space infill --robot rigid --stiffness-data \
          inputs/stiffness.csv --finger-model computed --finger finray9 --engine rapier --optimizer \
-         gp --objective range --aggregate weighted --weights 2,1 --seed 7 --budget 200 --batch 4"
+         gp --objective range --aggregate weighted --weights 2,1 --seed 7 --budget 60 --batch 4"
     );
 }
 

@@ -24,18 +24,23 @@ impl StudyRecord {
         self.recommendation().or_else(|| self.best())
     }
 
-    /// Returns the designs equivalent to the evaluation `index`, itself included, each with its loss in the
-    /// first objective: at most the indifference for objectives in mm, zero for others.
-    pub fn equivalent_designs(&self, index: u64) -> Vec<(&Recorded, f64)> {
+    /// Returns the designs that can be recommended, each with its loss in the first objective against the evaluation
+    /// `index`, which is among them; none if that cannot be recommended.
+    pub fn losses(&self, index: u64) -> Vec<(&Recorded, f64)> {
         let (current, gains) = (self.current(), self.first_gains());
         let own = current.iter().position(|recorded| recorded.index == index);
         let Some(own) = own.and_then(|at| gains[at]) else { return Vec::new() };
+        let loss = |(recorded, gain): (_, Option<f64>)| Some((recorded, own - gain?));
+        current.iter().zip(gains).filter_map(loss).collect()
+    }
+
+    /// Returns whether a design of this loss is equivalent to the one without a loss: it loses at most the indifference
+    /// for objectives in mm, nothing for others.
+    pub fn is_equivalent(&self, loss: f64) -> bool {
         let in_mm = self.config.objective.first().unit() == "mm";
         let tolerance = if in_mm { self.config.indifference_mm } else { 0.0 };
-        let loss = |(recorded, gain): (_, Option<f64>)| Some((recorded, own - gain?));
         // Multiples of 0.1 mm are rounded in binary.
-        let equivalent = |(_, loss): &(&Recorded, f64)| *loss <= tolerance + 1e-9;
-        current.iter().zip(gains).filter_map(loss).filter(equivalent).collect()
+        loss <= tolerance + 1e-9
     }
 
     /// Returns the gain in the first objective of each of the [`current`](Self::current) designs: its firm

@@ -4,7 +4,7 @@ use super::StudyConfig;
 use super::limits::ForceLimits;
 use super::on_bench::BenchPrediction;
 use super::provenance::Segment;
-use ask_tell::pareto;
+use ask_tell::{Grid, pareto};
 use insertion::evaluation::Evaluation;
 use insertion::evaluation::objective::{Goals, Measure, Score};
 use insertion::evaluation::robustness::firm::FirmResult;
@@ -164,6 +164,15 @@ impl StudyRecord {
         (self.foreign > 0).then(foreign).into_iter().collect()
     }
 
+    /// Returns whether the search has not ended: it was interrupted, or is running. A polish may converge at any
+    /// number of evaluations, so that its end is not known.
+    pub fn unfinished(&self) -> bool {
+        let StudyRecord { config, segments, evaluations, .. } = self;
+        let most = most_evaluations(config, segments, evaluations).min(config.budget);
+        let most = most.min(Grid::new(config.space.levels()).size());
+        !self.settled && (evaluations.len() as u64) < most
+    }
+
     /// Returns the evaluations of the current simulation: of the last segment, and of those directly before it that
     /// simulate alike.
     pub fn current(&self) -> &[Recorded] {
@@ -199,6 +208,23 @@ pub(super) fn first_current(segments: &[Segment]) -> u64 {
     let Some(last) = segments.last() else { return 0 };
     let alike = |segment: &&Segment| segment.provenance.simulates_like(&last.provenance);
     segments.iter().rev().take_while(alike).last().map_or(0, |segment| segment.first)
+}
+
+/// Number of current evaluations (see [`StudyRecord::current`]) without an insertion at a nominal start after which a
+/// study ends.
+pub(super) const MAX_FAILED_STARTS: u64 = 12;
+
+/// Returns the largest number of evaluations: the budget, or fewer while no design has inserted.
+pub(super) fn most_evaluations(
+    config: &StudyConfig,
+    segments: &[Segment],
+    evaluations: &[Recorded],
+) -> u64 {
+    let (budget, first) = (config.evaluations(), first_current(segments));
+    match evaluations.iter().skip(first as usize).any(Recorded::inserts) {
+        true => budget,
+        false => budget.min(first + MAX_FAILED_STARTS),
+    }
 }
 
 /// Returns the evaluation with the smallest sum of constraint violations, the earliest in a tie.

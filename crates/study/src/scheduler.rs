@@ -18,14 +18,14 @@
 //! result. Its journal holds the results in order of arrival, each with the number of its proposal: it
 //! depends on the speed of the workers, but can be replayed from that order.
 //!
-//! At most [`MAX_FAILED_STARTS`] designs are evaluated before one inserts at its nominal start: if none
-//! does, the start or the strategy is wrong, and no other finger would succeed. The rest of that batch is
-//! evaluated once a design has inserted.
+//! At most [`MAX_FAILED_STARTS`](super::record::MAX_FAILED_STARTS) designs are evaluated before one inserts
+//! at its nominal start: if none does, the start or the strategy is wrong, and no other finger would
+//! succeed. The rest of that batch is evaluated once a design has inserted.
 
 use super::error::StudyError;
 use super::folder::Study;
 use super::line;
-use super::record::{Recorded, Timing, first_current};
+use super::record::{Recorded, Timing, most_evaluations};
 use ask_tell::GridPoint;
 use ask_tell::{Observation, Optimizer, StopReason};
 use insertion::evaluation::evaluator::Evaluations;
@@ -52,10 +52,6 @@ pub enum Ending {
     /// The run was cancelled.
     Interrupted,
 }
-
-/// Number of current evaluations (see [`StudyRecord::current`](super::StudyRecord::current)) without an insertion at a
-/// nominal start after which a study ends.
-const MAX_FAILED_STARTS: usize = 12;
 
 /// Largest absolute value of an objective; a larger one, or NaN, counts as failed.
 const LARGEST_VALUE: f64 = 1e15;
@@ -300,14 +296,9 @@ impl Scheduler {
         }
     }
 
-    /// Returns the largest number of evaluations: the budget, or fewer while no design has inserted.
+    /// Returns the largest number of evaluations of a study.
     fn limit(study: &Study) -> usize {
-        let budget = study.config.evaluations() as usize;
-        let first = first_current(&study.segments) as usize;
-        match study.evaluations.iter().skip(first).any(Recorded::inserts) {
-            true => budget,
-            false => budget.min(first + MAX_FAILED_STARTS),
-        }
+        most_evaluations(&study.config, &study.segments, &study.evaluations) as usize
     }
 
     /// Returns the ending of a study at its limit.

@@ -130,6 +130,7 @@ mod tests {
             space: &space,
             design: &design,
             given: None,
+            done: &|_| (),
         };
         let value = |path| current_value(&analysis, &specimen, &Path::new(path).unwrap());
         assert_eq!(value(TILTING_KEY), Some(specimen.finger.rotation[0]));

@@ -13,7 +13,7 @@ use insertion::surrogate::Prediction;
 use insertion::task::StartRule;
 use parameters::plan::one_at_a_time::End;
 use rayon::prelude::*;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 /// Largest number of windows measured; levers beyond it are left out.
 const MOST_WINDOWS: usize = 20;
@@ -30,6 +30,8 @@ pub struct LeverAnalysis<'a> {
     pub design: &'a Design,
     /// Stiffness of the finger; `None` to predict it from the design.
     pub given: Option<Prediction>,
+    /// Progress callback: how many windows are measured and how many there are.
+    pub done: &'a (dyn Fn([usize; 2]) + Sync),
 }
 
 /// Lever to be measured, and the index of the specimen of each end; an end that changes nothing has index 0, the
@@ -47,7 +49,7 @@ impl LeverAnalysis<'_> {
         infill: Option<[f64; 2]>,
         stop: &AtomicBool,
     ) -> Result<Levers, DesignError> {
-        let LeverAnalysis { evaluator, template, design, given, .. } = *self;
+        let LeverAnalysis { evaluator, template, design, given, done, .. } = *self;
         let mut specimens = vec![evaluator.apply(template, (design, given), &[])?];
         if infill.is_none() {
             for design in self.extremes()? {
@@ -56,8 +58,13 @@ impl LeverAnalysis<'_> {
         }
         let infills = specimens.len();
         let (candidates, left_out) = self.candidates(&mut specimens)?;
-        let windows = specimens.par_iter().map(|specimen| self.window(specimen, stop));
-        let found = windows.collect::<Result<Vec<_>, _>>()?;
+        let count = AtomicUsize::new(0);
+        let window = |specimen| {
+            let found = self.window(specimen, stop);
+            done([count.fetch_add(1, Ordering::Relaxed) + 1, specimens.len()]);
+            found
+        };
+        let found = specimens.par_iter().map(window).collect::<Result<Vec<_>, _>>()?;
         let ranges: Vec<_> = found.iter().map(range_mm).collect();
         let base = Base {
             range_mm: ranges[0].unwrap_or(0.0),

@@ -51,10 +51,14 @@ pub struct MapAxis {
 }
 
 impl CaptureMap {
-    /// Traces the map of a finger on a task with at most 300 trials.
-    pub fn trace(task: &str, design: Design, plane: &Plane<'_>) -> Self {
-        let TracedMap { low, high, nodes, trials, step, .. } =
-            grid::trace(LIMIT, &|node| plane.outcome(node));
+    /// Traces the map of a finger on a task with at most 300 trials; `done` is called after each.
+    pub fn trace(task: &str, design: Design, plane: &Plane<'_>, done: &(dyn Fn() + Sync)) -> Self {
+        let simulated = |node| {
+            let outcome = plane.outcome(node);
+            done();
+            outcome
+        };
+        let TracedMap { low, high, nodes, trials, step, .. } = grid::trace(LIMIT, &simulated);
         let inserting = nodes.values().filter(|found| found.outcome == Outcome::Inserted).count();
         let names = [["y", "mm"], plane.axes.second().0];
         let outcome = |node| nodes.get(&node).map_or(Outcome::Diverged, |found| found.outcome);
@@ -160,6 +164,7 @@ mod tests {
     use insertion::trial::fake::{FakeRig, window_mm};
     use insertion::trial::{Conditions, Grasp};
     use parameters::plan::grid::STEPS_PER_UNIT;
+    use std::sync::atomic::{AtomicUsize, Ordering};
 
     /// In the closed-form rig a second error of 1 mm or 1° shortens the window by 1 mm at both ends.
     #[test]
@@ -170,7 +175,12 @@ mod tests {
             let plane = Plane::new(&rig, Grasp::of(&finger), *axes);
             let on = |threads| {
                 let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-                pool.install(|| CaptureMap::trace("closed form", Design::default(), &plane))
+                let count = AtomicUsize::new(0);
+                let done = || drop(count.fetch_add(1, Ordering::Relaxed));
+                let trace = || CaptureMap::trace("closed form", Design::default(), &plane, &done);
+                let map = pool.install(trace);
+                assert_eq!(count.into_inner(), map.trials);
+                map
             };
             let map = on(1);
             assert_eq!(map, on(3));

@@ -1,7 +1,7 @@
 //! Print sheet: one page on how to print a finger and how to check the print.
 
 use super::profile::profile;
-use super::slicer::LAYER;
+use super::slicer::setting;
 use super::{mm, title};
 use crate::geometry::Geometry;
 use crate::holes::{Block, Direction};
@@ -216,15 +216,20 @@ fn finger_rows(geometry: &Geometry) -> Vec<(&'static str, String)> {
 }
 
 fn print_rows(geometry: &Geometry) -> Vec<(&'static str, String)> {
+    let set = |key| setting(geometry, key);
+    let [line, layer] = ["extrusion_width", "layer_height"].map(set);
+    let [walls, wall] = ["perimeters", "perimeter_extrusion_width"].map(set);
+    let [density, angle] = ["fill_density", "fill_angle"].map(set);
     vec![
         ("lies", "flat, as drawn; layers along the depth".to_owned()),
         ("0°", "ribs straight across the finger".to_owned()),
         ("above 0°", "front (upper) ends lean to the base".to_owned()),
-        ("line width", format!("{}, layers {LAYER} mm", mm(geometry.finger.line_width))),
+        ("line width", format!("{line}, layers {layer}, walls {walls} × {wall}")),
         ("STL, 3MF", "ribs are in the file: thin walls on,".to_owned()),
         ("", "solid infill, no other".to_owned()),
-        ("own infill", "3MF with settings: do not turn it. Tried in".to_owned()),
-        ("", "PrusaSlicer, not OrcaSlicer, Bambu Studio".to_owned()),
+        ("own infill", format!("3MF with settings: {density}, {angle}° from X;")),
+        ("", "do not turn it. Tried in PrusaSlicer, not".to_owned()),
+        ("", "OrcaSlicer, Bambu Studio".to_owned()),
     ]
 }
 

@@ -13,7 +13,7 @@ use maud::{Markup, html};
 use std::f64::consts::PI;
 
 /// Height of a layer, mm: as usual, half the line width, 0.4 mm in the published fingers.
-pub(super) const LAYER: f64 = 0.2;
+const LAYER: f64 = 0.2;
 /// Version of the settings of Cura 5.0; later versions accept them.
 const CURA_SETTING_VERSION: &str = "20";
 
@@ -105,6 +105,12 @@ fn settings(geometry: &Geometry) -> Vec<(&'static str, &'static str, String)> {
         ("infill_anchor", "infill_anchor", off()),
         ("infill_anchor_max", "infill_anchor_max", off()),
     ]
+}
+
+/// Returns the value of a setting by its key in PrusaSlicer; empty without such a setting.
+pub(super) fn setting(geometry: &Geometry, key: &str) -> String {
+    let found = settings(geometry).into_iter().find(|(prusaslicer, ..)| *prusaslicer == key);
+    found.map_or_else(String::new, |(.., value)| value)
 }
 
 /// Returns a 3MF file with outline and solid base and PrusaSlicer's settings for this object, which are read when

@@ -51,6 +51,9 @@ const PRINTS: usize = 3;
 
 /// Returns the next step as a complete command, and its purpose; `dir` is the study's folder.
 pub fn next(answer: &Answer, dir: &Path) -> (String, &'static str) {
+    if answer.record.unfinished() {
+        return (format!("optimize resume {}", dir.display()), "continue the unfinished study");
+    }
     let inputs = InputArguments { record: answer.record, dir };
     let several = answer.record.config.several_tasks();
     // Measurements refer to the name of the user's file, not to that of its copy.

@@ -151,18 +151,38 @@ pub fn searched(answer: &Answer) -> String {
     format!("{task} with {method}: {evaluated}; mating force {}", forces.join(", "))
 }
 
-/// Returns the number of designs that tie with the recommended one, and their parameters.
+/// Returns the ties of the finger to print; `None` if measurements were used, for a Pareto front, or without a finger.
+pub fn region(answer: &Answer) -> Option<Line> {
+    Some(tied(answer, simulated_finger(answer)?.ties.as_ref()?))
+}
+
+/// Returns the number of designs that tie with the recommended one, their parameters, and the losses of others among
+/// these parameters and of the nearest ones.
 pub fn tied(answer: &Answer, ties: &Ties) -> Line {
     let (count, of) = (ties.designs.len(), answer.designs);
-    let within = match answer.record.config.objective.first().unit() {
-        "mm" => format!(" within {} mm", answer.record.config.indifference_mm),
-        _ => String::new(),
+    let measure = answer.record.config.objective.first();
+    let in_mm = measure.unit() == "mm";
+    let within = match in_mm {
+        true => format!(" within {} mm", answer.record.config.indifference_mm),
+        false => String::new(),
     };
-    if count < 2 {
-        return line("ties", format!("none of {of} designs{within}"));
-    }
     let spread: Vec<String> = ties.spread.iter().take(SPREADS).map(Spread::words).collect();
-    line("ties", format!("{count} of {of} designs{within}: {}", spread.join(", ")))
+    let tied = match count {
+        ..2 => format!("none of {of} designs{within}"),
+        _ => format!("{count} of {of} designs{within}: {}", spread.join(", ")),
+    };
+    let others =
+        ties.loss_within.map(|loss| format!("others there lose up to {}", measure.show(loss)));
+    let matters = in_mm && !matches!(answer.verdict, Verdict::Any { .. });
+    let narrow = ties.narrow.filter(|_| matters).map(|(steps, loss)| {
+        let nearest = match steps {
+            1 => "narrow: neighbours on the grid".to_owned(),
+            _ => format!("the nearest others, {steps} steps away,"),
+        };
+        format!("{nearest} lose at least {}", mm(loss))
+    });
+    let parts = [Some(tied), others, narrow].into_iter().flatten();
+    line("ties", parts.collect::<Vec<_>>().join("; "))
 }
 
 /// Largest number of parameters whose values are listed.

@@ -101,6 +101,16 @@ impl<'a> Answer<'a> {
         answer
     }
 
+    /// Returns the first sentence of the answer, with the number of evaluations of an unfinished study.
+    pub fn headline(&self) -> String {
+        let (record, headline) = (self.record, self.verdict.headline());
+        let done = record.config.counted(record.evaluations.len());
+        match record.unfinished() {
+            true => format!("{headline} (unfinished, after {done})"),
+            false => headline,
+        }
+    }
+
     /// Returns the evaluation of the design to print according to simulation alone; `None` if there is none.
     pub fn design_to_print(&self) -> Option<&'a Recorded> {
         let found = self.recommended.as_ref()?;

@@ -18,6 +18,11 @@ pub struct Ties<'a> {
     pub designs: Vec<(&'a Recorded, f64)>,
     /// Values over these designs of each parameter of the space whose bounds differ.
     pub spread: Vec<Spread<'a>>,
+    /// Largest loss of the other designs within that spread; `None` if there are none.
+    pub loss_within: Option<f64>,
+    /// Distance of the evaluated designs nearest to the recommended one (the largest number of steps by which a parameter
+    /// differs) and their smallest loss, mm, if none of them ties: the optimum is narrow.
+    pub narrow: Option<(u32, f64)>,
     /// Share of the space that is nearer to a tied design than to any other design, 0 to 1. The number of tied designs
     /// alone is misleading, since a search samples good regions more densely.
     pub share: f64,
@@ -65,7 +70,10 @@ impl Spread<'_> {
 
 impl<'a> Ties<'a> {
     pub(super) fn of(record: &'a StudyRecord, index: u64, measured: &[MeasuredFinger]) -> Self {
-        let designs = record.equivalent_designs(index);
+        let losses = record.losses(index);
+        let narrow = narrow(record, index, &losses);
+        let (designs, others): (Vec<_>, Vec<_>) =
+            losses.into_iter().partition(|(_, loss)| record.is_equivalent(*loss));
         // The walk simulates more starts than the search, and usually finds a larger force.
         let walked = |found: &'a Recorded| {
             let mut walked = record.walked.iter().map(|walked| &walked.recorded);
@@ -101,7 +109,8 @@ impl<'a> Ties<'a> {
         let least_force = simulated.min_by(|a, b| a.0.total_cmp(&b.0));
         let safe = widest.or(least_force).map(|(_, safe)| safe);
         let (spread, share) = (spread(record, &designs), share(record, &designs));
-        Ties { spread, share, alternatives: alternatives.collect(), safe, designs }
+        let (loss_within, alternatives) = (loss_within(&spread, &others), alternatives.collect());
+        Ties { spread, loss_within, narrow, share, alternatives, safe, designs }
     }
 }
 
@@ -142,6 +151,31 @@ fn spread<'a>(record: &'a StudyRecord, designs: &[(&Recorded, f64)]) -> Vec<Spre
     free.map(|parameter| of(&parameter.key)).collect()
 }
 
+/// Returns the largest loss of the designs that do not tie, but whose parameters are within the spread of those that do.
+fn loss_within(spread: &[Spread], others: &[(&Recorded, f64)]) -> Option<f64> {
+    let inside = |found: &Recorded| {
+        let is_within = |Spread { key, values: [low, high] }: &Spread| {
+            found.design.get(key).is_some_and(|value| (*low..=*high).contains(&value))
+        };
+        spread.iter().all(is_within)
+    };
+    let within = others.iter().filter(|(found, _)| inside(found));
+    within.map(|(_, loss)| *loss).reduce(f64::max)
+}
+
+/// Returns [`Ties::narrow`], given the losses against the evaluation `index`.
+fn narrow(record: &StudyRecord, index: u64, losses: &[(&Recorded, f64)]) -> Option<(u32, f64)> {
+    let point = |found: &Recorded| record.config.space.point(&found.design).0;
+    let own = losses.iter().find(|(found, _)| found.index == index).map(|(own, _)| point(own))?;
+    let apart = |&(found, loss): &(&Recorded, f64)| {
+        let steps = point(found).into_iter().zip(&own).map(|(level, own)| level.abs_diff(*own));
+        Some((steps.max().filter(|steps| *steps > 0)?, loss))
+    };
+    let others = losses.iter().filter_map(apart);
+    let nearest = others.min_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+    nearest.filter(|(_, loss)| !record.is_equivalent(*loss))
+}
+
 #[cfg(test)]
 mod tests {
     use crate::answer::{Answer, Verdict};
@@ -175,5 +209,25 @@ mod tests {
         let gentlest = gentlest.fold(f64::INFINITY, f64::min);
         assert!(safe.measured_mm.is_some() || safe.force_n == Some(gentlest));
         assert_eq!(answer.verdict.finger(), Some(&safe.design.design));
+    }
+
+    #[test]
+    fn losses_beside_the_ties_are_told() {
+        let mut record = fixture();
+        // Beside the recommended design of 6.7 mm, 11 % at 6°.
+        record.evaluations[2].design = insertion::space::Design::infill(12.0, 7.0);
+        let mut tied = |indifference_mm: f64| {
+            record.config.indifference_mm = indifference_mm;
+            let answer = Answer::of(&record);
+            let found = answer.recommended.as_ref().and_then(|found| found.ties.as_ref());
+            crate::answer::lines::tied(&answer, found.unwrap()).1
+        };
+        let narrow = "narrow: neighbours on the grid lose at least 1.9 mm";
+        assert_eq!(tied(0.3), format!("none of 10 designs within 0.3 mm; {narrow}"));
+        let wide = tied(0.7);
+        let region = "3 of 10 designs within 0.7 mm: 11 to 19 %, 1 to 16°";
+        let expected = format!("{region}; others there lose up to 1.9 mm");
+        assert!(wide.starts_with(&expected), "{wide}");
+        assert!(!tied(1.9).contains("lose"), "it ties");
     }
 }

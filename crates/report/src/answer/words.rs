@@ -145,6 +145,14 @@ pub fn design(design: &Design) -> String {
     if others.0.is_empty() { infill } else { format!("{infill}, {}", others.labelled()) }
 }
 
+/// Returns the probability that none of the listed fingers is the best, given theirs, and the number of the other
+/// fingers, in words; `None` if all are listed.
+pub fn others(listed: impl ExactSizeIterator<Item = f64>, of: usize) -> Option<String> {
+    let left = of.checked_sub(listed.len()).filter(|left| *left > 0)?;
+    let percent = 100.0 * (1.0 - listed.sum::<f64>()).max(0.0);
+    Some(format!("{percent:.1} % spread over {left} others"))
+}
+
 /// Returns the values of objectives, with their names if there are several.
 pub fn values(objectives: &Objectives, values: &[f64]) -> String {
     match (objectives.single(), values) {
@@ -157,4 +165,16 @@ pub fn values(objectives: &Objectives, values: &[f64]) -> String {
 pub fn volume_unit(objectives: &Objectives) -> String {
     let units = objectives.measures().iter().map(|measure| measure.unit());
     units.filter(|unit| !unit.is_empty()).collect::<Vec<_>>().join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_fingers_not_listed_have_the_rest_of_the_probability() {
+        let listed = || [0.15, 0.12].into_iter();
+        assert_eq!(others(listed(), 43).as_deref(), Some("73.0 % spread over 41 others"));
+        assert_eq!(others(listed(), 2), None);
+    }
 }

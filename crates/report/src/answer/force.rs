@@ -42,11 +42,29 @@ impl ExcessForce {
         let ExcessForce { task, peak_force_n, limit_n, of_connector } = self;
         let limit = match of_connector {
             true => format!("its connector withstands {limit_n:.0} N (limits.force_n)"),
-            false => format!(
-                "more than {:.0} % of the {limit_n:.0} N at which the robot {robot} stops",
-                100.0 * STOP_SHARE
-            ),
+            false => {
+                let above = match peak_force_n > limit_n {
+                    true => "above".to_owned(),
+                    false => format!("more than {:.0} % of", 100.0 * STOP_SHARE),
+                };
+                format!("{above} the {limit_n:.0} N at which the robot {robot} stops")
+            }
         };
         format!("up to {peak_force_n:.0} N on {task}: {limit}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_force_is_above_the_limit_or_near_it() {
+        let words = |peak_force_n| {
+            let task = "usb".to_owned();
+            ExcessForce { task, peak_force_n, limit_n: 150.0, of_connector: false }.words("servo")
+        };
+        assert!(words(149.0).contains("149 N on usb: more than 90 % of the 150 N at which"));
+        assert!(words(155.4).contains("155 N on usb: above the 150 N at which the robot servo"));
     }
 }

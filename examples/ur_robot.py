@@ -3,7 +3,7 @@
 NOT TESTED ON HARDWARE. Only the signatures of its calls were checked, against ur_rtde 1.6.5. Read the code,
 adapt it to your cell, review the moves that it prints (`dry_run=True`), and then run it slowly, with a person
 next to the robot and a hand on the stop button. Set the safety limits of the robot first, and pass their force as
-``robot_stop_n``: simulated insertions reach 144 N. The gripper stays closed; this program does not move it.
+``robot_stop_n``: simulated insertions exceed 140 N. The gripper stays closed; this program does not move it.
 """
 
 from __future__ import annotations

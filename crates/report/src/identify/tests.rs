@@ -97,6 +97,9 @@ fn an_attempt_that_ends_differently_is_marked() {
     assert!(page.contains("The identified cell predicts: jammed (class 3)."));
     assert!(page.contains("The blue curve ends at 0.20 s with the simulated attempt: jammed"));
     assert!(page.contains("11 of 12 attempts are simulated to end as measured"));
+    assert!(page.contains(" numbers; fewer end as measured than before: do not trust"));
+    assert!(super::text(&done).contains("warning: fewer end as measured than before"));
+    assert!(super::text(&done).contains("\nranges        not validated by these logs"));
 }
 
 #[test]

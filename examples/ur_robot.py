@@ -2,8 +2,8 @@
 
 NOT TESTED ON HARDWARE. Only the signatures of its calls were checked, against ur_rtde 1.6.5. Read the code,
 adapt it to your cell, review the moves that it prints (`dry_run=True`), and then run it slowly, with a person
-next to the robot and a hand on the stop button. Set the safety limits of the robot first: simulated insertions
-reach more than 100 N. The gripper stays closed; this program does not move it.
+next to the robot and a hand on the stop button. Set the safety limits of the robot first, and pass their force as
+``robot_stop_n``: simulated insertions exceed 140 N. The gripper stays closed; this program does not move it.
 """
 
 from __future__ import annotations
@@ -48,9 +48,13 @@ class URRobot:
 
     ``taught`` is the TCP pose (x, y, z, rx, ry, rz; m, rad) at the start that inserts; ``surface_m`` is the
     height of the TCP relative to it, along ``out_of_socket``, at which the tip touches the top of the socket
-    (below 0). ``jaws`` and ``out_of_socket`` are the task's y and z in the base frame. ``force_limit_n`` is the
-    force that ends an attempt, ``touch_n`` the force that counts as contact. ``face`` is the TCP pose at which
-    the plug is upright, a few mm above a flat face beside the opening, where :meth:`probe` measures the friction.
+    (below 0). ``jaws`` and ``out_of_socket`` are the task's y and z in the base frame. ``touch_n`` is the force
+    that counts as contact. ``face`` is the TCP pose at which the plug is upright, a few mm above a flat face beside
+    the opening, where :meth:`probe` measures the friction.
+
+    ``force_limit_n`` is the force that ends an attempt. It may not exceed, and by default is, the smaller of the
+    task's ``limits.force_n`` and ``robot_stop_n``, the force at which the robot stops by itself. Braking takes time:
+    choose less for a connector that must not see more.
     """
 
     host: str
@@ -60,7 +64,8 @@ class URRobot:
     jaws: Sequence[float] = (0.0, 1.0, 0.0)
     out_of_socket: Sequence[float] = (0.0, 0.0, 1.0)
     face: Sequence[float] | None = None
-    force_limit_n: float = 60.0
+    robot_stop_n: float = 150.0
+    force_limit_n: float | None = None
     touch_n: float = 5.0
     dry_run: bool = True
     ask: Callable[[str], str] = input
@@ -74,6 +79,14 @@ class URRobot:
         if not (np.isclose(np.linalg.norm(y), 1) and np.isclose(np.linalg.norm(z), 1) and abs(y @ z) < 1e-6):
             raise ValueError("jaws and out_of_socket must be perpendicular unit vectors")
         self.axes = np.column_stack([np.cross(y, z), y, z])
+        connector_n = getattr(getattr(self.task, "limits", None), "force_n", self.robot_stop_n)
+        most_n = min(connector_n, self.robot_stop_n)
+        self.stop_n = most_n if self.force_limit_n is None else self.force_limit_n
+        if not self.touch_n < self.stop_n <= most_n:
+            raise ValueError(
+                f"force_limit_n: is {self.stop_n:g} N; it must be above touch_n, {self.touch_n:g} N, and at most "
+                f"{most_n:g} N, the smaller of the task's limits.force_n and robot_stop_n"
+            )
         if not self.dry_run and self.control is None:
             import rtde_control  # pyright: ignore[reportMissingImports]
             import rtde_receive  # pyright: ignore[reportMissingImports]
@@ -94,7 +107,7 @@ class URRobot:
         for phase in self.task.strategy.phase:
             touching = phase.motion == "touch"
             at = at + np.array(list(phase.move_mm))
-            limit = self.touch_n if touching else self.force_limit_n
+            limit = self.touch_n if touching else self.stop_n
             moves.append(Move(phase.name, self.pose(at), phase.speed_mm_per_s / 1000.0, limit))
         return moves
 
@@ -103,13 +116,14 @@ class URRobot:
         if self.face is None:
             raise ValueError("face: teach a pose above the flat face beside the opening")
         half_mm, height_mm = 500.0 * PROBE_M, 1000.0 * height_m
+        catching_n = min(4.0 * PROBE_N, self.stop_n)
         above, down = [0.0, -half_mm, 0.0], [0.0, -half_mm, -1000.0 * PROBE_DEPTH_M]
         moves = [Move("above", self.pose(above, self.face), RETREAT_M_S, self.touch_n),
                  Move("down", self.pose(down, self.face), PROBE_M_S, PROBE_N)]
         # At constant height the normal force varies; the log contains the normal and the tangential force.
         for y_mm in (half_mm, -half_mm, half_mm, -half_mm):
-            moves.append(Move("slide", self.pose([0.0, y_mm, height_mm], self.face), PROBE_M_S, 4.0 * PROBE_N))
-        return [*moves, Move("up", self.pose(above, self.face), RETREAT_M_S, self.force_limit_n)]
+            moves.append(Move("slide", self.pose([0.0, y_mm, height_mm], self.face), PROBE_M_S, catching_n))
+        return [*moves, Move("up", self.pose(above, self.face), RETREAT_M_S, self.stop_n)]
 
     def probe(self, log: Path) -> None:
         """Slides on the flat face beside the opening; with ``dry_run``, prints the moves and raises :class:`DryRun`."""
@@ -150,7 +164,7 @@ class URRobot:
             peak = 0.0
             for move in phases:
                 peak = max(peak, self.guarded(move))
-                if peak >= self.force_limit_n:
+                if peak >= self.stop_n:
                     break
             depth_mm = self.depth_mm()
             inserted, failure = self.judged(depth_mm)
@@ -202,7 +216,7 @@ class URRobot:
         pose = self.receive.getActualTCPPose()
         up = self.axes[:, 2] * float(self.axes[:, 2] @ (np.array(self.taught[:3], float) - np.array(pose[:3])))
         out = [*(np.array(pose[:3]) + up).tolist(), *pose[3:]]
-        if self.guarded(Move("retreat", out, RETREAT_M_S, self.force_limit_n)) >= self.force_limit_n:
+        if self.guarded(Move("retreat", out, RETREAT_M_S, self.stop_n)) >= self.stop_n:
             raise RuntimeError("the plug is stuck; free it by hand")
 
 

@@ -92,7 +92,7 @@ impl Progress {
 
     /// Shows that a part is done.
     pub fn part(&mut self, Part { what, done, of, cost }: &Part) {
-        self.step(*cost, &format!("{what}: {done}/{of}"), done == of);
+        self.step(*cost, &format!("{what}: {done}/{of}"), *done == 0 || done == of);
     }
 
     /// Shows that a design was evaluated.
@@ -105,7 +105,8 @@ impl Progress {
         self.step(1.0, &what, Some(done) == budget);
     }
 
-    /// Adds a part of this cost and shows the progress; after the last part of a phase a line is written in any case.
+    /// Adds a part of this cost and shows the progress; before the first and after the last part of a phase a line is
+    /// written in any case.
     fn step(&mut self, cost: f64, what: &str, last: bool) {
         let left = self.time_left(cost, self.last.elapsed());
         self.last = Instant::now();
@@ -128,7 +129,8 @@ impl Progress {
     fn time_left(&mut self, cost: f64, took: Duration) -> Duration {
         self.done += cost;
         self.left = (self.left - cost).max(0.0);
-        if took > CACHED {
+        // The beginning of a phase costs nothing, and the time before it is not of the phase.
+        if took > CACHED && cost > 0.0 {
             self.computed = (self.computed.0 + cost, self.computed.1 + took);
         }
         self.computed.1.mul_f64(self.left / self.computed.0.max(1.0))
@@ -203,6 +205,7 @@ mod tests {
         let mut progress = Progress::of(10.0, false);
         let second = Duration::from_secs(1);
         (0..5).for_each(|_| assert!(progress.time_left(1.0, CACHED / 2).is_zero()));
+        assert!(progress.time_left(0.0, second).is_zero(), "before the first part");
         assert_eq!(progress.time_left(1.0, second), 4 * second);
         assert_eq!(progress.time_left(2.0, 4 * second), 2 * second * 5 / 3);
     }

@@ -76,7 +76,18 @@ fn calibration_and_the_next_print_answer_in_the_agreed_form() {
     let best: f64 = predictions.iter().filter_map(|p| p["probability_best"].as_f64()).sum();
     assert!((best - 1.0).abs() < 1e-9, "{best}");
     assert!(found["parameters"][0]["moved"].is_boolean());
+    assert!(task["loo_mean_of_others_percent"].as_f64().is_some_and(|of| (of - 18.7).abs() < 0.05));
+    let reliable = task["reliable"].as_bool().expect("whether");
+    let verdict = task["verdict"].as_str().expect("a sentence");
+    assert_eq!(verdict.starts_with("trust these"), reliable, "{verdict}");
     let folder = Studies::new();
+    let two = folder.file("two.csv", format!("{HEAD}ket8,10,6,8\nket8,11,40,2\n"));
+    let shown = optimize_line(&format!("calibrate {few} {two}").replace("--json ", ""));
+    assert!(shown.stdout.starts_with("ket8: do not rely on these predictions yet"));
+    shown.says_in_any_lines("measure 3 more, or identify the cell from logs");
+    shown.says_in_any_lines("by the mean of the others 188 %");
+    let begins = "ket8: simulations with drawn parameters of the cell: 0/24\n";
+    assert!(shown.stderr.starts_with(begins), "{}", shown.stderr);
     let more = format!("{} --count 2 --among published", folder.file("empty.csv", ""));
     let next = optimize_line(&format!("next {few} {more}")).json();
     assert_eq!((next["next"].as_array().map(Vec::len), &next["stop"]), (Some(2), &false.into()));
@@ -254,14 +265,26 @@ fn a_finger_of_a_task_of_ones_own_is_measured_without_naming_it_twice() {
     line("measure check own/bench.csv").succeeds();
     let next = line(&format!("next {few} own/bench.csv"));
     assert!(next.succeeds().starts_with("mine: 2 fingers measured"), "{}", next.stdout);
+    // Predictions carry their interval, and how many intervals of measured fingers were right.
+    next.says(&["predicted without their own measurement, "]);
+    let choice = next.stdout.lines().find(|line| line.starts_with("without a further print"));
+    assert!(choice.is_some_and(|line| line.contains(" mm (80 %: ")), "{}", next.stdout);
     // A study recommends the finger that `next` would choose without a further print.
-    let choice = line(&format!("next --json {few} own/bench.csv")).json()["choice"].clone();
+    let found = line(&format!("next --json {few} own/bench.csv")).json();
+    assert_eq!(found["loo_designs"], 2);
+    assert!(found["loo_inside"].as_u64().is_some_and(|inside| inside <= 2), "{found}");
+    let choice = found["choice"].clone();
     let study = "--budget 4 --no-levers --no-map --json --out s --task own/mine.toml";
     let study = line(&format!("{study} {few} own/bench.csv")).json();
     for (key, value) in study["recommended"]["values"].as_object().expect("a finger") {
         assert_eq!(choice[key], *value, "{choice} {}", study["recommended"]);
     }
-    assert_eq!(choice["expected_mm"], study["recommended"]["bench"]["range_mm"]);
+    let bench = &study["recommended"]["bench"];
+    for (key, of_study) in
+        [("expected_mm", "range_mm"), ("low_mm", "low_mm"), ("high_mm", "high_mm")]
+    {
+        assert_eq!(choice[key], bench[of_study], "{key}");
+    }
     let found = line(&format!("calibrate --json {few} own/bench.csv")).json();
     assert_eq!(found["tasks"][0]["task"], "mine");
     let text = folder.read("own/bench.csv").replace("# task mine: mine.toml\n", "");

@@ -148,7 +148,13 @@ class Calibrated(Result):
 
     task: str
     designs: int
+    #: Whether the predictions can be trusted within their intervals.
+    reliable: bool
+    #: Advice on their use, with its reason.
+    verdict: str
     loo_mean_deviation_percent: float | None
+    #: Error of predicting each finger by the mean of the others.
+    loo_mean_of_others_percent: float | None
     loo_spearman: float | None
     loo_coverage_80_percent: float | None
     simulations: int
@@ -212,12 +218,10 @@ def _tables(calibration: Calibration) -> str:
             f"<td>{finger.range_mm:.1f} mm</td><td>{finger.low_mm:.1f} to {finger.high_mm:.1f}</td>"
             f"<td>{finger.probability_best:.0%}</td></tr>" for finger in best
         )
-        error = task.loo_mean_deviation_percent
-        trust = "" if error is None else f": {error:.0f} % off on average for fingers left out"
         warnings = "".join(f"<p>{html.escape(text)}</p>" for text in task.warnings)
         pieces.append(
-            f"<b>{html.escape(task.task)}</b>{trust}<table><tr><th>finger</th><th>range</th><th>80 %</th>"
-            f"<th>best</th></tr>{rows}</table>{warnings}"
+            f"<b>{html.escape(task.task)}</b>: {html.escape(task.verdict)}<table><tr><th>finger</th><th>range</th>"
+            f"<th>80 %</th><th>best</th></tr>{rows}</table>{warnings}"
         )
     return "".join(pieces)
 
@@ -241,6 +245,8 @@ class Choice(Result):
 
     values: dict[str, float] = field(metadata=REST)
     expected_mm: float
+    low_mm: float
+    high_mm: float
     measured: bool
 
 
@@ -250,6 +256,9 @@ class Advice(Result):
 
     task: str
     measured: int
+    #: Number of fingers predicted without their own measurement, and of those that are in their 80 % interval.
+    loo_designs: int
+    loo_inside: int
     #: Printed fingers that insert from no start; they are not recommended again.
     not_measurable: tuple[dict[str, float], ...]
     measurements_missing: bool

@@ -74,6 +74,29 @@ def test_a_dry_run_prints_the_program_and_reports_no_attempt(example, capsys, tm
     assert not (tmp_path / "bench.csv").exists()
 
 
+def test_an_attempt_ends_at_the_limit_of_the_connector_or_of_the_robot(example):
+    import finger_opt as fo
+
+    def robot(force_n=None, **forces):
+        limits = "" if force_n is None else f"\n[limits]\nforce_n = {force_n}\n"
+        task = fo.Task.from_toml(fo.Task.from_toml("usb").to_toml() + limits)
+        return example.URRobot("nowhere", task, (0.4, -0.2, 0.3, 0, 3.14, 0), surface_m=-0.01,
+                               face=(0.43, -0.2, 0.3, 0, 3.14, 0), **forces)
+
+    def largest_n(robot):
+        return max(move.force_n for move in robot.program(0.0) + robot.probe_program())
+
+    assert largest_n(robot()) == 150
+    assert largest_n(robot(robot_stop_n=120)) == 120
+    assert largest_n(robot(force_n=90.0)) == 90
+    assert largest_n(robot(force_n=90.0, force_limit_n=60)) == 60
+    assert largest_n(robot(force_n=12.0)) == 12
+    with pytest.raises(ValueError, match="force_limit_n: is 100 N; .* at most 90 N"):
+        robot(force_n=90.0, force_limit_n=100)
+    with pytest.raises(ValueError, match="above touch_n, 5 N"):
+        robot(force_limit_n=5)
+
+
 class Wire:
     """Both interfaces of a robot that is at once where it is sent, over a socket that ends 8 mm deep."""
 

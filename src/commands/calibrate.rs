@@ -3,6 +3,7 @@
 use crate::command::{self, Output};
 use crate::context::Context;
 use crate::failure::Failure;
+use crate::layout::wrapped;
 use crate::progress::cost;
 use crate::setup::bench::{BenchRequest, CalibrationRequest, Prepared, folds};
 use crate::setup::measured;
@@ -59,6 +60,6 @@ impl command::Request for Request {
             write_file(&out.join("parameters.csv"), &table::parameters_csv(&found))?;
             text.push(format!("tables are in {}\n", out.display()));
         }
-        Ok(Output::new(text.join("\n"), table::json(&found, &subjects)))
+        Ok(Output::new(wrapped(&text.join("\n")), table::json(&found, &subjects)))
     }
 }

@@ -4,11 +4,13 @@ use crate::command::{self, Output};
 use crate::context::Context;
 use crate::failure::Failure;
 use crate::progress::cost;
-use crate::setup::bench::{BenchRequest, CalibrationRequest, Prepared};
+use crate::setup::bench::{BenchRequest, CalibrationRequest, Prepared, folds};
 use crate::setup::measured;
 use crate::setup::words::parse_at_least_0;
 use ask_tell::stream::stream;
-use calibration::next::{Advice, Fingers, advise};
+use calibration::bench::Settings;
+use calibration::calibrate::leave_one_out;
+use calibration::next::{Advice, Choice, Fingers, advise};
 use input::shipped::Source;
 use insertion::space::Design;
 use insertion::stiffness::designs;
@@ -60,6 +62,10 @@ pub struct Advised {
     task: String,
     /// Number of fingers with a measured range.
     measured: usize,
+    /// Number of fingers predicted in turn from the measurements of the others, and of those whose 80 % interval then
+    /// contains the measured range.
+    loo_designs: usize,
+    loo_inside: usize,
     /// Fingers that were printed, but of which no range could be measured.
     not_measurable: Vec<Design>,
     /// Whether the measurement file does not exist yet.
@@ -114,10 +120,15 @@ impl command::Request for Request {
         let mut random = stream(settings.seed, 0, "next");
         let (count, cost_mm) = (usize::from(self.count), self.print_cost_mm);
         let advice = advise(bench, &posterior, fingers, count, cost_mm, &mut random);
+        let done = |[done, of]: [usize; 2]| context.part(&folds(done, of));
+        let (settings, dimension) = (Settings { done: &done, ..settings }, layout.dimension());
+        let left_out = leave_one_out((&benches, 0), &subject.designs, dimension, &settings);
         context.check()?;
         let value = Advised {
             task: subject.task.clone(),
             measured: subject.measured().len() - failed.len(),
+            loo_designs: left_out.len(),
+            loo_inside: left_out.iter().filter(|one| one.inside()).count(),
             not_measurable: failed.iter().map(|&number| subject.designs[number].clone()).collect(),
             measurements_missing: missing,
             advice,
@@ -128,7 +139,7 @@ impl command::Request for Request {
 
 impl Advised {
     fn text(&self, measurements: &str, print_cost_mm: f64) -> String {
-        let Advised { task, measured, measurements_missing, advice, .. } = self;
+        let Advised { task, measured, measurements_missing, advice, loo_designs, .. } = self;
         let file = measurements_missing.then(|| format!(" ({measurements} does not exist)"));
         let mut text = match advice.best_known_mm {
             Some(best) => {
@@ -140,6 +151,12 @@ impl Advised {
                 format!("{task}: nothing measured yet{file}; by simulation alone\n")
             }
         };
+        if *loo_designs > 0 {
+            text += &format!(
+                "predicted without their own measurement, {} of {loo_designs} are in their 80 % interval\n",
+                self.loo_inside
+            );
+        }
         if !self.not_measurable.is_empty() {
             let fingers = self.not_measurable.iter().map(design).collect::<Vec<_>>().join("; ");
             text += &format!("printed, not measurable: {fingers}\n");
@@ -168,9 +185,12 @@ impl Advised {
         }
         if let Some(choice) = advice.choice.as_ref().filter(|_| advice.stop || *measured > 0) {
             let known = if choice.measured { "measured" } else { "not measured" };
-            let (finger, mm) = (design(&choice.design), choice.expected_mm);
-            text +=
-                &format!("without a further print choose {finger}: expected {mm:.1} mm, {known}\n");
+            let Choice { expected_mm, low_mm, high_mm, .. } = choice;
+            text += &format!(
+                "without a further print choose {}: expected {expected_mm:.1} mm (80 %: {low_mm:.1} to \
+                 {high_mm:.1}), {known}\n",
+                design(&choice.design)
+            );
         }
         text
     }

@@ -146,12 +146,17 @@ impl<'a> CalibrationContext<'a> {
         let Setup { evaluator, space, .. } = self.setup;
         let subject = |template: &'a Template| {
             let (task, count) = (&template.task.name, self.simulations);
-            let counted = AtomicUsize::new(0);
-            let done = || {
-                let done = counted.fetch_add(1, Ordering::Relaxed) + 1;
-                let what = format!("{task}: simulations");
-                self.context.part(&Part { what, done, of: count, cost: cost::SIMULATION });
+            let cached = self.cache.as_ref().map_or(String::new(), |folder| {
+                let folder = folder.display();
+                format!(", reusing {folder} unless task, robot or cell changed")
+            });
+            let show = |done, cost, more: &str| {
+                let what = format!("{task}: simulations{more}");
+                self.context.part(&Part { what, done, of: count, cost });
             };
+            show(0, 0.0, &format!(" with drawn parameters of the cell{cached}"));
+            let counted = AtomicUsize::new(0);
+            let done = || show(counted.fetch_add(1, Ordering::Relaxed) + 1, cost::SIMULATION, "");
             let (parameters, cache) = (self.priors.of(task), self.cache.clone());
             let simulation =
                 Simulation::new(evaluator, template, parameters, cache, self.context.stop);

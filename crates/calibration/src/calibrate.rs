@@ -4,6 +4,7 @@ use super::bench::{Bench, Settings, sampled};
 use super::predict::{IntervalKind, Predicted, draws, predict};
 use super::process::COORDINATES;
 use super::subject::Subject;
+use super::verdict::Verdict;
 use ask_tell::statistics::{mean, spearman};
 use ask_tell::stream::stream;
 use insertion::outcome::FailureClass;
@@ -177,22 +178,38 @@ impl LeftOut {
 }
 
 impl TaskResult {
-    /// Returns the accuracy of the leave-one-out predictions; the given error of the emulator is passed on. The mean
-    /// deviation in percent does not include fingers with a measured range of 0.
+    /// Returns the accuracy of the leave-one-out predictions; the given error of the emulator is passed on.
     pub fn accuracy(&self, emulator_error_mm: f64) -> LeaveOneOut {
         let left_out = &self.left_out;
-        let wide = left_out.iter().filter(|one| one.measured_mm > 0.0);
-        let percent =
-            |one: &LeftOut| 100.0 * (one.range_mm - one.measured_mm).abs() / one.measured_mm;
         let pairs: Vec<(f64, f64)> =
             left_out.iter().map(|one| (one.range_mm, one.measured_mm)).collect();
         LeaveOneOut {
             fingers: left_out.len(),
-            mean_deviation_percent: mean(wide.map(percent)),
+            mean_deviation_percent: self.deviation_percent(|one| one.range_mm),
             spearman: spearman(&pairs),
             inside: left_out.iter().filter(|one| one.inside()).count(),
             emulator_error_mm,
         }
+    }
+
+    /// Returns the mean deviation, percent, of predicting each finger by the mean measured range of the others; `None`
+    /// without others.
+    pub fn mean_of_others_percent(&self) -> Option<f64> {
+        let others = self.left_out.len().checked_sub(1).filter(|others| *others > 0)?;
+        let total: f64 = self.left_out.iter().map(|one| one.measured_mm).sum();
+        self.deviation_percent(|one| (total - one.measured_mm) / others as f64)
+    }
+
+    /// Returns the mean deviation of predictions from the measured ranges, percent, without fingers with a measured
+    /// range of 0.
+    fn deviation_percent(&self, predicted_mm: impl Fn(&LeftOut) -> f64) -> Option<f64> {
+        let wide = self.left_out.iter().filter(|one| one.measured_mm > 0.0);
+        mean(wide.map(|one| 100.0 * (predicted_mm(one) - one.measured_mm).abs() / one.measured_mm))
+    }
+
+    /// Returns the verdict on the predictions.
+    pub fn verdict(&self) -> Verdict {
+        Verdict::of(&self.accuracy(0.0), self.mean_of_others_percent())
     }
 }
 
@@ -200,7 +217,7 @@ impl TaskResult {
 const MAX_FOLDS: usize = 20;
 
 /// Predicts each finger with a measured range from the others' measurements, in at most `MAX_FOLDS` calibrations.
-fn leave_one_out(
+pub fn leave_one_out(
     (benches, task): (&[Bench<'_>], usize),
     designs: &[Design],
     dimension: usize,
@@ -228,4 +245,30 @@ fn leave_one_out(
         fold.iter().zip(predicted).filter_map(left_out).collect()
     };
     fingers.par_chunks(size).flat_map_iter(fold).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::published::{BENCH, of_task};
+
+    /// The mean of the other published usb fingers is 8.9 % off (docs/notes/bench.md).
+    #[test]
+    fn the_mean_of_the_others_is_compared_with_each_measured_range() {
+        let left_out = |measured_mm: f64| LeftOut {
+            design: Design::default(),
+            measured_mm,
+            range_mm: 0.0,
+            low_mm: 0.0,
+            high_mm: 0.0,
+        };
+        let of = |ranges: &[f64]| {
+            let left_out = ranges.iter().copied().map(left_out).collect();
+            TaskResult { predictions: Vec::new(), left_out }.mean_of_others_percent()
+        };
+        let usb: Vec<f64> = of_task("usb", BENCH).iter().filter_map(|one| one.range_mm).collect();
+        assert!(of(&usb).is_some_and(|percent| (percent - 8.9).abs() < 0.05), "{:?}", of(&usb));
+        assert_eq!((of(&[4.0, 2.0]), of(&[4.0, 0.0])), (Some(75.0), Some(100.0)));
+        assert_eq!((of(&[4.0]), of(&[])), (None, None));
+    }
 }

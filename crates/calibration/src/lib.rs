@@ -8,7 +8,7 @@
 //! 2. `emulator`: a Gaussian process fitted to simulated ranges, with its error.
 //! 3. `process`: discrepancy between simulation and bench, a Gaussian process over the stiffness.
 //! 4. `subject`, `bench`: the posterior of parameters and hyperparameters, given the measurements of each task.
-//! 5. `predict`, `calibrate`: ranges with intervals; leave-one-out validation.
+//! 5. `predict`, `calibrate`, `verdict`: ranges with intervals; leave-one-out validation.
 //! 6. `next`: which finger to print.
 //! 7. `table`: the results as JSON and CSV, and their summary in a study.
 //!
@@ -30,3 +30,4 @@ pub mod subject;
 pub mod table;
 #[cfg(test)]
 mod tests;
+pub mod verdict;

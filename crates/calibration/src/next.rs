@@ -39,7 +39,12 @@ pub struct Print {
 pub struct Choice {
     #[serde(flatten)]
     pub design: Design,
+    /// Expected range, mm.
     pub expected_mm: f64,
+    /// Lower end of its 80 % interval, mm.
+    pub low_mm: f64,
+    /// Upper end of its 80 % interval, mm.
+    pub high_mm: f64,
     pub measured: bool,
 }
 
@@ -95,20 +100,29 @@ pub fn advise(
     // In closed form, as a study predicts them, so that both choose the same finger; without failed fingers, which
     // `predict` ignores.
     let predicted = failed.is_empty().then(|| predict(bench, posterior, &all, IntervalKind::Truth));
-    let means = predicted.map_or_else(
+    let means = predicted.as_ref().map_or_else(
         || given.means.clone(),
         |predicted| predicted.iter().map(|range| range.mean_mm).collect(),
     );
+    let span = |column: usize| match &predicted {
+        Some(predicted) => [predicted[column].low_mm, predicted[column].high_mm],
+        None => given.interval(column),
+    };
     let best = |columns: &[usize]| {
         let first = columns.iter().rev().copied();
         first.max_by(|&a, &b| means[a].total_cmp(&means[b]))
     };
     let best_known_mm = best(&printed[..measured.len()]).map(|column| means[column]);
     let insert = (0..measured.len()).chain(known.len()..all.len());
-    let choice = best(&insert.collect::<Vec<_>>()).map(|column| Choice {
-        design: designs[all[column]].clone(),
-        expected_mm: means[column].max(0.0),
-        measured: column < measured.len(),
+    let choice = best(&insert.collect::<Vec<_>>()).map(|column| {
+        let [low_mm, high_mm] = span(column);
+        Choice {
+            design: designs[all[column]].clone(),
+            expected_mm: means[column].max(0.0),
+            low_mm,
+            high_mm,
+            measured: column < measured.len(),
+        }
     });
     let mut next: Vec<Print> = Vec::new();
     let mut stop = true;
@@ -120,10 +134,7 @@ pub fn advise(
         let first = gains.iter().rev().max_by(|a, b| net(a).total_cmp(&net(b)));
         let Some(&Gain { column, choice_mm, .. }) = first else { break };
         stop &= !next.is_empty() || gains.iter().all(|gain| gain.choice_mm < cost_mm);
-        let deviations = given.deviations.iter().map(|draw| draw[column]);
-        let values = sorted(deviations.map(|deviation| given.means[column] + deviation));
-        let tail = |level: f64| quantile(&values, level).unwrap_or(0.0).max(0.0);
-        let (low_mm, high_mm) = (tail((1.0 - INTERVAL) / 2.0), tail((1.0 + INTERVAL) / 2.0));
+        let [low_mm, high_mm] = given.interval(column);
         let expected_mm = given.means[column].max(0.0);
         let tried: Vec<StiffnessPoint> =
             printed.iter().map(|&column| bench.places[all[column]]).collect();
@@ -176,6 +187,13 @@ impl Ranges {
         let deviation = |draw: &Vec<f64>| draw.iter().zip(&means).map(|(a, b)| a - b).collect();
         let deviations = drawn.iter().map(deviation).collect();
         Ranges { means, deviations, noise2 }
+    }
+
+    /// Returns the 80 % interval of a finger's range, mm.
+    fn interval(&self, column: usize) -> [f64; 2] {
+        let values = sorted(self.deviations.iter().map(|draw| self.means[column] + draw[column]));
+        let tail = |level: f64| quantile(&values, level).unwrap_or(0.0).max(0.0);
+        [tail((1.0 - INTERVAL) / 2.0), tail((1.0 + INTERVAL) / 2.0)]
     }
 
     /// Returns the increase of each finger's mean by a measurement one standard deviation above its own mean.

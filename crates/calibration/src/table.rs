@@ -13,8 +13,6 @@ use study::{BenchEffort, BenchFinger, BenchPrediction, Provenance};
 /// Posterior standard deviation of a coordinate below which, and magnitude of its mean above which, the measurements
 /// are informative about it (prior: 1 and 0).
 const MOVED: (f64, f64) = (0.75, 0.5);
-/// Mean deviation of the leave-one-out predictions, percent, above which there is a warning.
-const MISSED: f64 = 50.0;
 /// Magnitude of the posterior correlation above which two parameters are confounded.
 const CONFOUNDED: f64 = 0.5;
 
@@ -81,41 +79,15 @@ pub fn confounded(calibration: &Calibration) -> Vec<Confounded> {
     pairs.map(of).filter(|pair| pair.correlation.abs() > CONFOUNDED).collect()
 }
 
-/// Returns the caveats about a task's predictions, one per line.
-pub fn warnings(subject: &Subject, result: &TaskResult) -> Vec<String> {
-    let accuracy = result.accuracy(subject.emulator.error_mm);
-    let mut lines = Vec::new();
-    let scale = subject.emulator.mean_mm.max(1.0);
-    if accuracy.fingers < 3 {
-        lines.push("fewer than 3 measured fingers: the intervals rest on the priors".to_owned());
-    }
-    if let Some(percent) = accuracy.mean_deviation_percent.filter(|percent| *percent > MISSED) {
-        lines.push(format!(
-            "left out, the measured fingers are predicted {percent:.0} % off on average: measure more \
-             before you rely on a prediction"
-        ));
-    }
-    // Of five or more fingers, fewer than half lie inside 80 % intervals by chance in at most 6 % of the cases.
-    if accuracy.fingers >= 5 && 2 * accuracy.inside < accuracy.fingers {
-        lines.push(format!(
-            "the intervals are too narrow: only {} of {} left-out fingers lie inside theirs",
-            accuracy.inside, accuracy.fingers
-        ));
-    }
-    if accuracy.fingers >= 5 && accuracy.spearman.is_none_or(|rank| rank < 0.3) {
-        let rank = accuracy.spearman.map_or("none".to_owned(), |rank| format!("{rank:+.2}"));
-        lines.push(format!(
-            "the order of the fingers is not predictable here: Spearman {rank} leave-one-out"
-        ));
-    }
-    if subject.emulator.error_mm > 0.2 * scale {
-        lines.push(format!(
-            "the emulator misses fresh simulations by {:.1} mm, more than a fifth of their mean: the \
-             predictions rest on the measurements; more --simulations may help",
-            subject.emulator.error_mm
-        ));
-    }
-    lines
+/// Returns a warning if the emulator of a task is inaccurate.
+pub fn warning(subject: &Subject) -> Option<String> {
+    let error_mm = subject.emulator.error_mm;
+    (error_mm > 0.2 * subject.emulator.mean_mm.max(1.0)).then(|| {
+        format!(
+            "the emulator misses fresh simulations by {error_mm:.1} mm, more than a fifth of their mean: the \
+             predictions rest on the measurements; more --simulations may help"
+        )
+    })
 }
 
 /// Returns the output of `--json` of a calibration of these subjects.
@@ -123,17 +95,21 @@ pub fn json(calibration: &Calibration, subjects: &[Subject]) -> Value {
     let task = |(subject, result): (&Subject, &TaskResult)| {
         let emulator = &subject.emulator;
         let accuracy = result.accuracy(emulator.error_mm);
+        let verdict = result.verdict();
         let inside = || 100.0 * accuracy.inside as f64 / accuracy.fingers as f64;
         json!({
             "task": subject.task,
             "designs": accuracy.fingers,
+            "reliable": verdict.reliable,
+            "verdict": verdict.text,
             "loo_mean_deviation_percent": accuracy.mean_deviation_percent,
+            "loo_mean_of_others_percent": result.mean_of_others_percent(),
             "loo_spearman": accuracy.spearman,
             "loo_coverage_80_percent": (accuracy.fingers > 0).then(inside),
             "simulations": emulator.simulations,
             "fresh_simulations": emulator.held_out,
             "emulator_error_mm": emulator.error_mm,
-            "warnings": warnings(subject, result),
+            "warnings": Vec::from_iter(warning(subject)),
             "leave_one_out": result.left_out,
             "predictions": result.predictions,
         })
@@ -236,6 +212,8 @@ pub fn bench_prediction(
     let bound = |(design, line): (&Design, &Experiment)| {
         (design.clone(), line.extent().map(|(least_mm, _)| least_mm))
     };
+    let verdict = result.verdict();
+    let doubt = (!verdict.reliable).then_some(verdict.text);
     BenchPrediction {
         provenance,
         effort,
@@ -244,7 +222,7 @@ pub fn bench_prediction(
         bounds: others.map(bound).collect(),
         fingers: result.predictions.len(),
         trust: result.accuracy(subject.emulator.error_mm),
-        warnings: warnings(subject, result),
+        warnings: doubt.into_iter().chain(warning(subject)).collect(),
         best: by_range(result).iter().take(BEST_FINGERS).map(finger).collect(),
         simulated,
     }

@@ -20,8 +20,8 @@ use insertion::task::{
 const BELOW_SHOULDER: f64 = 3.5 * MM;
 /// Height of a tilted tip's upper edge above its lower one, m.
 const RISE: f64 = 0.35 * MM;
-/// Smallest and largest tilt, degrees.
-const TILT_DEG: [f64; 2] = [5.0, 10.0];
+/// Smallest and largest usual tilt, degrees.
+pub const TILT_DEG: [f64; 2] = [5.0, 10.0];
 /// Clear height above the socket at the start and after the approach, m.
 const AIR: [f64; 2] = [5.0 * MM, 1.0 * MM];
 /// Longest stroke of the touch, m.

@@ -5,7 +5,7 @@ use crate::answer::words::{design, others};
 use calibration::calibrate::{Calibration, TaskResult};
 use calibration::predict::INTERVAL;
 use calibration::subject::Subject;
-use calibration::table::{ParameterUpdate, by_range, confounded, updates, warnings};
+use calibration::table::{ParameterUpdate, by_range, confounded, updates, warning};
 
 /// Number of fingers in the table.
 const LISTED: usize = 5;
@@ -13,10 +13,10 @@ const LISTED: usize = 5;
 /// Returns the result for a task as text within 80 columns.
 pub fn text(subject: &Subject, result: &TaskResult) -> String {
     let accuracy = result.accuracy(subject.emulator.error_mm);
-    let emulator = &subject.emulator;
+    let Subject { emulator, task, .. } = subject;
     let mut text = format!(
-        "{}: {} measured fingers; {} simulations, emulated within {:.2} mm ({} held out)\n",
-        subject.task,
+        "{task}: {}\n{task}: {} measured fingers; {} simulations, emulated within {:.2} mm ({} held out)\n",
+        result.verdict().text,
         subject.measured().len(),
         emulator.simulations,
         emulator.error_mm,
@@ -25,7 +25,7 @@ pub fn text(subject: &Subject, result: &TaskResult) -> String {
     if let Some(deviation) = accuracy.mean_deviation_percent {
         let rank = accuracy.spearman.map_or("-".to_owned(), |rank| format!("{rank:+.2}"));
         text += &format!(
-            "leave-one-out  {deviation:.1} % off on average, Spearman {rank}, {} of {} in the {:.0} % interval\n",
+            "leave-one-out  {deviation:.1} % off, Spearman {rank}, {} of {} in the {:.0} % interval\n",
             accuracy.inside,
             accuracy.fingers,
             100.0 * INTERVAL
@@ -45,7 +45,7 @@ pub fn text(subject: &Subject, result: &TaskResult) -> String {
     text += &text_table(1, head, rows);
     let others = others(best().map(|one| one.probability_best), result.predictions.len());
     text.extend(others.map(|words| format!("is the best: {words}\n")));
-    text.extend(warnings(subject, result).iter().map(|words| format!("warning: {words}\n")));
+    text.extend(warning(subject).iter().map(|words| format!("warning: {words}\n")));
     text
 }
 

@@ -8,7 +8,7 @@ use crate::progress::Part;
 use crate::setup::files::{check_is_new, robot};
 use crate::setup::request::{DEFAULT_ROBOT, TaskSource};
 use crate::setup::task::TaskFile;
-use crate::setup::tune::{outcome, ranges, step_json, tried, turned_text};
+use crate::setup::tune::{outcome, ranges, step_json, tilt_text, tried, turned_text};
 use crate::setup::words::parse_number;
 use connector::check::problems;
 use connector::tune::{Candidate, Effort, MOST_WINDOWS, Stage, Step, Tuned, Tuner, tune};
@@ -291,6 +291,7 @@ fn text(done: &TunedTask<'_>) -> String {
             let turned = turned_text(best);
             let text = format!("{}: {}{turned}", best.change, ranges(&after.windows));
             all.push(line("chosen", text));
+            all.extend(tilt_text(tuned).map(|why| line("", why)));
             let wider = |step: &Step| step.tried.score > best.tried.score;
             if tuned.steps.iter().any(wider) {
                 let why = format!(

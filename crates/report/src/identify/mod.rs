@@ -16,6 +16,12 @@ use input::units::{MM, N_PER_MM};
 use insertion::surrogate::Estimate;
 use serde_json::{Map, Value, json};
 
+/// Warning if fewer attempts are simulated to end as measured than before the identification.
+const FEWER: &str = "fewer end as measured than before: do not trust predictions of this cell";
+/// What the logs do not show.
+const RANGES: &str = "not validated by these logs: `optimize calibrate` predicts them with intervals, \
+                      and counts the measured fingers within theirs";
+
 /// Axes of the task's frame.
 const AXES: [&str; 3] = ["x", "y", "z"];
 
@@ -121,8 +127,9 @@ pub fn text(result: &IdentificationResult) -> String {
     let (outcomes, worse) = page::outcomes(&found.compared);
     text += &format!("outcomes      {outcomes}\n");
     if worse {
-        text += "warning: fewer than before: do not trust predictions of this cell\n";
+        text += &format!("warning: {FEWER}\n");
     }
+    text += &format!("ranges        {RANGES}\n");
     if let Some(one) = Validation::of(found) {
         let warning = if one.is_doubtful() { "warning: " } else { "" };
         text += &format!("{warning}{}\n", validated(&one));

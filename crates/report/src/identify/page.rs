@@ -1,6 +1,6 @@
 //! `identify.html`: the identified cell and the curves from which it was identified.
 
-use super::{AXES, origin, short, unmodelled, validated};
+use super::{AXES, FEWER, RANGES, origin, short, unmodelled, validated};
 use crate::answer::words::{design, number, outcome, stiffness};
 use crate::chart::{Area, DrawResult, HPos, VPos, axes, padded_range, render, text_style};
 use crate::elements::{definitions, document, stacked, table};
@@ -126,7 +126,8 @@ fn summary(found: &Identified) -> Vec<(String, String)> {
     };
     let all =
         [ValueOrigin::Formula, ValueOrigin::Fit, ValueOrigin::Prior, ValueOrigin::Files].map(named);
-    let (outcomes, _) = outcomes(&found.compared);
+    let (outcomes, worse) = outcomes(&found.compared);
+    let outcomes = if worse { format!("{outcomes}; {FEWER}") } else { outcomes };
     let share = format!("{:.0} % of the data compared", 100.0 * found.smoothed.compared);
     let misfit = match found.smoothed.misfit[..] {
         [first, .., last] if last.is_finite() => {
@@ -134,7 +135,8 @@ fn summary(found: &Identified) -> Vec<(String, String)> {
         }
         _ => share,
     };
-    let more = [("outcomes", outcomes), ("misfit in the fit", misfit)];
+    let more =
+        [("outcomes", outcomes), ("misfit in the fit", misfit), ("ranges", RANGES.to_owned())];
     all.into_iter().flatten().chain(more.map(|(name, text)| (name.to_owned(), text))).collect()
 }
 

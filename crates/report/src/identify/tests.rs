@@ -90,7 +90,7 @@ fn a_cell_that_predicts_worse_than_it_explains_is_doubtful() {
 #[test]
 fn an_attempt_that_ends_differently_is_marked() {
     let mut done = done();
-    let fewer = "warning: fewer than before: do not trust predictions of this cell";
+    let fewer = "warning: fewer end as measured than before";
     assert!(!super::text(&done).contains(fewer));
     let simulated = &mut done.found.compared[0].after;
     simulated.1 = Outcome::Failed(FailureClass::Jammed);
@@ -99,7 +99,9 @@ fn an_attempt_that_ends_differently_is_marked() {
     assert!(page.contains("The identified cell predicts: jammed (class 3)."));
     assert!(page.contains("The blue curve ends at 0.20 s with the simulated attempt: jammed"));
     assert!(page.contains("11 of 12 attempts are simulated to end as measured"));
+    assert!(page.contains(" numbers; fewer end as measured than before: do not trust"));
     assert!(super::text(&done).contains(fewer));
+    assert!(super::text(&done).contains("\nranges        not validated by these logs"));
     done.found.compared[0].before.1 = Outcome::Failed(FailureClass::Jammed);
     assert!(!super::text(&done).contains(fewer), "as many as before");
 }

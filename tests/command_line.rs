@@ -178,13 +178,14 @@ fn the_project_file_gives_defaults_that_options_precede() {
     };
     studies.file(
         "lab/finger-opt.toml",
-        "task = \"usb\"\nrobot = \"rigid\"\ncell = \"cell.toml\"\nmeasurements = \"bench.csv\"\n",
+        "task = \"usb\"\nrobot = \"rigid\"\nmeasurements = \"bench.csv\"\n",
     );
     let study = "--engine fake --budget 4 --no-levers --no-map --json --out s";
-    // Cell and measurements are not there yet.
+    // The measurements are not there yet.
     let found = lines("lab", study);
     assert_eq!((&found.json()["task"], &found.json()["robot"]), (&"usb".into(), &"rigid".into()));
-    let sets = "finger-opt.toml sets task usb, robot rigid";
+    let sets =
+        "finger-opt.toml sets task usb, robot rigid; measurements bench.csv not used: no such file";
     assert_eq!(found.stderr.lines().next(), Some(sets));
     let recorded = studies.read("lab/s/study.toml");
     assert!(recorded.contains(&format!("project = \"{sets}\"")), "{recorded}");
@@ -201,10 +202,26 @@ fn the_project_file_gives_defaults_that_options_precede() {
     assert!(bench.contains("usb,10,6"), "{bench}");
     lines("lab", "measure check").succeeds();
     // With an identified cell, which contains a robot.
+    let project = studies.read("lab/finger-opt.toml");
+    studies.file("lab/finger-opt.toml", project + "cell = \"cell.toml\"\n");
+    let evaluate = "evaluate --engine fake --density 20 --direction 10";
+    let missing = ["error: finger-opt.toml: line 4: cell: cell.toml does not exist"];
+    for line in [evaluate, "config"] {
+        lines("lab", line).fails(2, &missing);
+    }
+    lines("lab", "identify --runs runs.csv").fails(2, &["sets task usb, robot rigid\n"]);
     studies.file("lab/cell.toml", include_str!("fixtures/v0.5.0/cell.toml"));
-    let cell = lines("lab", "evaluate --engine fake --density 20 --direction 10").stderr;
-    let sets = "finger-opt.toml sets task usb, cell cell.toml, measurements bench.csv";
-    assert_eq!(cell.lines().next(), Some(sets));
+    for (more, sets) in [
+        (
+            "",
+            "task usb, cell cell.toml, measurements bench.csv; robot rigid not used: cell cell.toml",
+        ),
+        (" --robot servo", "task usb, measurements bench.csv; cell cell.toml not used: --robot"),
+    ] {
+        let found = lines("lab", &format!("{evaluate}{more}")).stderr;
+        assert_eq!(found.lines().next(), Some(&*format!("finger-opt.toml sets {sets}")));
+    }
+    lines("lab", "config").says(&["rigid                    (finger-opt.toml; not used: the cell"]);
     let next = lines("lab", "next --engine fake --no-cache --simulations 16 --samples 20").stderr;
     assert!(next.contains("sets task usb, priors cell.toml, measurements bench.csv"), "{next}");
     studies.file("lab/finger-opt.toml", "seed = 3\n");
@@ -212,6 +229,11 @@ fn the_project_file_gives_defaults_that_options_precede() {
         .fails(2, &["finger-opt.toml", "seed: belongs to one study; give --seed"]);
     studies.file("lab/finger-opt.toml", "task = \"usb,kett\"\n");
     lines("lab", "config").fails(2, &["finger-opt.toml: ", "`kett`", "ket8, ket12, rj45, usb"]);
+    studies.file("lab/finger-opt.toml", "task = \"usb\"\nthreads = 9999\n");
+    for line in [study, "config"] {
+        let problem = "finger-opt.toml: line 2: threads: 9999: must lie between 1 and 1024";
+        lines("lab", line).fails(2, &[problem]);
+    }
     studies.file("lab/finger-opt.toml", "tasks = \"usb\"\n");
     lines("lab", study).fails(2, &["finger-opt.toml", "tasks"]);
 }

@@ -40,11 +40,15 @@ fn a_trial_prints_the_promised_keys() {
 #[test]
 fn everything_prints_as_text_too() {
     fake("evaluate --task usb --density 20 --direction 10").says(&["window"]);
-    fake(TRIAL).says(&["inserted"]);
+    let trial = fake(TRIAL);
+    trial.says(&["inserted"]);
     optimize_line("stiffness").says(&["N/mm"]);
     let tasks = optimize_line("tasks");
     tasks.says(&["ket8", "ket12", "rj45", "usb", "infill", "\n  typical"]);
     assert!(!tasks.stdout.contains("ur5e"), "one place lists robots");
+    for text in [&trial.stdout, &tasks.stdout] {
+        assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
+    }
     assert!(optimize_line("stiffness --json").json()["models"].is_array());
     let help = optimize_line("--help");
     help.says(&["--budget", "Example: optimize --task usb --budget 200"]);
@@ -169,6 +173,23 @@ fn the_short_help_is_a_screen_and_the_long_one_has_every_option_below_a_heading(
 }
 
 #[test]
+fn help_is_wrapped_and_true_of_each_command() {
+    for command in finger_opt::commands::COMMANDS {
+        let help = optimize(&[command.path, &["--help"]].concat());
+        let long = help.succeeds().lines().find(|line| line.chars().count() > 100);
+        assert_eq!(long, None, "{:?}", command.path);
+        // These take several tasks; these can take more than two seconds.
+        let words = help.stdout.split_whitespace().collect::<Vec<_>>().join(" ");
+        let several = matches!(command.path, ["study" | "calibrate"]);
+        let told = words.contains("a task file; several separated by commas");
+        assert_eq!(told, several, "{:?}", command.path);
+        let slow =
+            matches!(command.path, ["evaluate"] | ["task", "new" | "import" | "check" | "tune"]);
+        assert!(!slow || words.contains("--quiet Show no progress"), "{:?}", command.path);
+    }
+}
+
+#[test]
 fn the_project_file_gives_defaults_that_options_precede() {
     let studies = Studies::new();
     let folder = |name: &str| studies.dir(name);
@@ -257,6 +278,7 @@ fn bad_usage_is_answered_with_2_and_what_would_be_right() {
         ("--task usb --budget 5 --batch 0", &["--batch"]),
         ("--task usb --budget 5 --threads 0", &["--threads"]),
         ("--task usb --budget 5 --seed -1", &["--seed"]),
+        ("task tune usb --max-force-n -3", &["--max-force-n", "give a number above 0"]),
         ("--task usb --budget 5 --optimizer pg", &["gp, cma-es"]),
         ("--task usb --budget 5 --objective x", &["range, centred-range"]),
         ("--task usb --budget 5 --constraint peak-forc<=3", &["did you mean `peak-force`"]),

@@ -71,7 +71,7 @@ pub(crate) fn settings(effort: BenchEffort, seed: u64, stop: &AtomicBool) -> Set
 #[derive(Debug, Clone, Default, clap::Args)]
 pub struct RunRequest {
     /// Threads [default: one per processor]; changes no result
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(THREADS))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(THREADS))]
     pub threads: Option<u16>,
     /// Cache of evaluations.
     #[command(flatten)]

@@ -108,7 +108,12 @@ fn augment<R: Request>(command: clap::Command) -> clap::Command {
     let command = R::augment_args(command);
     let json = R::JSON.then(|| flag(JSON, "Print the result as JSON"));
     let quiet = R::PROGRESS.then(|| flag(QUIET, "Show no progress"));
-    command.args(json.into_iter().chain(quiet))
+    let command = command.args(json.into_iter().chain(quiet));
+    // A negative number is then an error that names the accepted values.
+    command.mut_args(|arg| match arg.get_long() {
+        Some(_) if arg.get_action().takes_values() => arg.allow_negative_numbers(true),
+        _ => arg,
+    })
 }
 
 /// Parses a request from the words of a command line after the command's name.

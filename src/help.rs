@@ -10,6 +10,8 @@ const TITLE: Style = AnsiColor::Green.on_default().bold();
 const WORD: Style = AnsiColor::Cyan.on_default().bold();
 const PLACEHOLDER: Style = AnsiColor::Cyan.on_default();
 
+/// Largest width of a help text, also without a terminal, columns.
+pub const COLUMNS: usize = 100;
 /// Commands by purpose, for the short help.
 const COMMANDS: [(&str, &[&str]); 5] = [
     ("Study", &["study", "resume", "report", "compare"]),

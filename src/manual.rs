@@ -1,5 +1,6 @@
 //! Description of the command line: reference page, and a list for other languages.
 
+use crate::help::COLUMNS;
 use crate::project::NO_CONFIG;
 use clap::{Arg, ArgAction};
 use serde_json::{Value, json};
@@ -20,7 +21,7 @@ pub fn reference(program: clap::Command) -> String {
     }
     let mut page =
         "# Commands and options\n\nOutput of `optimize --help` for each command.\n".into();
-    let mut command = program.term_width(100);
+    let mut command = program.term_width(COLUMNS);
     command.build();
     section(&mut command, "optimize", &mut page);
     page

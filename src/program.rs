@@ -55,6 +55,7 @@ pub fn program() -> clap::Command {
     let root = clap::Command::new("optimize")
         .version(VERSION.as_str())
         .styles(help::styles())
+        .max_term_width(help::COLUMNS)
         .subcommand_negates_reqs(true)
         .arg_required_else_help(true)
         .args_conflicts_with_subcommands(true);
@@ -147,9 +148,10 @@ fn with_project(
         return Ok((program, Vec::new()));
     }
     let Some(project) = Project::current()? else { return Ok((program, Vec::new())) };
-    let mut defaults = project.defaults(command, given);
-    if !defaults.is_empty() {
-        let value = project.words(&defaults);
+    let found = project.defaults(command, given)?;
+    let value = project.words(&found);
+    let mut defaults = found.options;
+    if !value.is_empty() {
         say(&value);
         defaults.push(OptionDefault { option: "project", value });
     }

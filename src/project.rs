@@ -1,10 +1,12 @@
 //! Project file `finger-opt.toml`: defaults of options for the commands that are run in its folder or below.
 
 use crate::failure::Failure;
+use crate::setup::run::THREADS;
 use clap::Command;
+use input::Place;
 use input::shipped::{MEASUREMENTS, Source};
 use serde::{Deserialize, Serialize};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Name of the file.
 pub const PROJECT_FILE: &str = "finger-opt.toml";
@@ -36,6 +38,8 @@ pub struct Settings {
 pub struct Project {
     /// Path of the file.
     pub file: String,
+    /// Text of the file.
+    text: String,
     /// Keys with their values; paths relative to the folder of the file are made relative to the current folder.
     pub settings: Settings,
 }
@@ -47,6 +51,15 @@ pub struct OptionDefault {
     pub option: &'static str,
     /// Value as text.
     pub value: String,
+}
+
+/// Defaults of the options of a command, from a project file.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Defaults {
+    /// Options that the file sets.
+    pub options: Vec<OptionDefault>,
+    /// Values in the file that the command does not use, each with the reason.
+    pub unused: Vec<String>,
 }
 
 impl Project {
@@ -76,50 +89,104 @@ impl Project {
             let each = value.split(',').map(|name| beside(folder, name.trim()));
             *value = each.collect::<Vec<_>>().join(",");
         }
-        Ok(Project { file, settings })
+        let threads = settings.threads.map(i64::from);
+        let project = Project { file, text, settings };
+        if let Some(count) = threads.filter(|count| !THREADS.contains(count)) {
+            let (least, most) = (THREADS.start(), THREADS.end());
+            let problem = format!("{count}: must lie between {least} and {most}");
+            return Err(project.fault("threads", problem));
+        }
+        Ok(project)
+    }
+
+    /// Returns the error of the value of a key.
+    pub(crate) fn fault(&self, key: &str, problem: impl ToString) -> Failure {
+        let sets = |line: &str| line.split_once('=').is_some_and(|(name, _)| name.trim() == key);
+        let line = self.text.lines().position(sets).map(|before| before + 1);
+        let place = Place { line, ..Place::file(&self.file) };
+        Failure::input(place.key(key).fault(problem.to_string()))
+    }
+
+    /// Checks that the file of the cell exists, if there is one.
+    ///
+    /// # Errors
+    /// If it does not.
+    pub(crate) fn check_cell(&self) -> Result<(), Failure> {
+        let missing = self.settings.cell.iter().find(|file| !Path::new(file).is_file());
+        missing.map_or(Ok(()), |file| {
+            let made = format!("`optimize identify --out {file}` writes a cell");
+            Err(self.fault("cell", format!("{file} does not exist; {made}")))
+        })
     }
 
     /// Returns the defaults for a command; `given` returns whether an option is on the command line, which
     /// takes precedence.
-    pub fn defaults(&self, command: &Command, given: impl Fn(&str) -> bool) -> Vec<OptionDefault> {
+    ///
+    /// # Errors
+    /// If the command uses the cell, and its file does not exist.
+    pub fn defaults(
+        &self,
+        command: &Command,
+        given: impl Fn(&str) -> bool,
+    ) -> Result<Defaults, Failure> {
         let Settings { task, robot, cell, measurements, space, threads } = self.settings.clone();
+        let mut unused = Vec::new();
+        let mut unless = |why: Option<String>, key: &str, value: Option<String>| {
+            let (Some(value), Some(why)) = (&value, why) else { return value };
+            unused.push(format!("{key} {value} not used: {why}"));
+            None
+        };
         let name = command.get_name();
         let takes = |long: &str| command.get_arguments().any(|arg| arg.get_long() == Some(long));
-        // Only `next` and `measure add` accept a missing file of measurements.
-        let accepts_missing = ["next", "add"].contains(&name);
-        let measurements = measurements.filter(|file| accepts_missing || exists(file));
         let file = (["add", "check"].contains(&name) && !takes("svg")).then_some("file");
         // A study with another objective, constraints or several tasks does not use measurements.
         let other = ["objective", "constraint", "aggregate"].into_iter().any(&given);
         let bench = takes("measurements").then_some("measurements").filter(|_| !other);
+        let of_bench = file.or(bench).filter(|option| !given(option));
+        let measurements = measurements.filter(|_| of_bench.is_some());
+        // Only `next` and `measure add` accept a missing file of measurements.
+        let there = ["next", "add"].contains(&name) || measurements.iter().all(|file| exists(file));
+        let missing = (!there).then(|| "no such file".to_owned());
+        let measurements = unless(missing, "measurements", measurements);
         let measured = measurements.is_some() && bench.is_some() || given("measurements");
         // With measurements the cell replaces the priors. `identify` writes the cell and does not read it. A robot on
         // the command line takes precedence.
-        let cell = cell.filter(|file| exists(file) && name != "identify");
-        let cell = cell.filter(|_| !["cell", "priors", "robot"].into_iter().any(&given));
         let cell_option = if measured && takes("priors") { "priors" } else { "cell" };
-        let cell = cell.filter(|_| takes(cell_option));
-        let robot = robot.filter(|_| cell.is_none() && !given("cell") && !given("priors"));
+        let cell = cell.filter(|_| takes(cell_option) && name != "identify");
+        let cell = cell.filter(|_| !["cell", "priors"].into_iter().any(&given));
+        let cell = unless(given("robot").then(|| "--robot".to_owned()), "cell", cell);
+        cell.iter().try_for_each(|_| self.check_cell())?;
+        let option = ["cell", "priors"].into_iter().find(|option| given(option));
+        let with_robot = cell.as_ref().map(|cell| format!("cell {cell}"));
+        let with_robot = with_robot.or(option.map(|option| format!("--{option}")));
+        let robot = robot.filter(|_| takes("robot") && !given("robot"));
+        let robot = unless(with_robot, "robot", robot);
         let threads = threads.map(|count| count.to_string());
-        [
+        let options = [
             (Some("task"), task),
             (Some("robot"), robot),
             (Some(cell_option), cell),
-            (file.or(bench), measurements),
+            (of_bench, measurements),
             (Some("space"), space),
             (Some("threads"), threads),
         ]
         .into_iter()
         .filter_map(|(option, value)| Some(OptionDefault { option: option?, value: value? }))
-        .filter(|set| (set.option == "file" || takes(set.option)) && !given(set.option))
-        .collect()
+        .filter(|set| (set.option == "file" || takes(set.option)) && !given(set.option));
+        Ok(Defaults { options: options.collect(), unused })
     }
 
-    /// Returns the file and the options that it sets as text: `finger-opt.toml sets task usb, robot ur5e`.
-    pub fn words(&self, defaults: &[OptionDefault]) -> String {
-        let set =
-            defaults.iter().map(|OptionDefault { option, value }| format!("{option} {value}"));
-        format!("{} sets {}", self.file, set.collect::<Vec<_>>().join(", "))
+    /// Returns the file, the options that it sets and the values that are not used, as text:
+    /// `finger-opt.toml sets task usb; cell cell.toml not used: --robot`. Empty if there are none.
+    pub fn words(&self, Defaults { options, unused }: &Defaults) -> String {
+        let set = options.iter().map(|OptionDefault { option, value }| format!("{option} {value}"));
+        let set = set.collect::<Vec<_>>().join(", ");
+        let set = (!set.is_empty()).then(|| format!("sets {set}"));
+        let parts: Vec<String> = set.into_iter().chain(unused.iter().cloned()).collect();
+        if parts.is_empty() {
+            return String::new();
+        }
+        format!("{} {}", self.file, parts.join("; "))
     }
 }
 
@@ -130,8 +197,9 @@ fn beside(folder: &Path, name: &str) -> String {
     if is_path { path.display().to_string() } else { name.to_owned() }
 }
 
-fn exists(file: &str) -> bool {
-    PathBuf::from(file).is_file() || MEASUREMENTS.iter().any(|shipped| shipped.name == file)
+/// Returns whether a file of measurements exists or is shipped.
+pub(crate) fn exists(file: &str) -> bool {
+    Path::new(file).is_file() || MEASUREMENTS.iter().any(|shipped| shipped.name == file)
 }
 
 /// Returns the clap definition with these defaults in the command selected by `path`.

@@ -40,11 +40,15 @@ fn a_trial_prints_the_promised_keys() {
 #[test]
 fn everything_prints_as_text_too() {
     fake("evaluate --task usb --density 20 --direction 10").says(&["window"]);
-    fake(TRIAL).says(&["inserted"]);
+    let trial = fake(TRIAL);
+    trial.says(&["inserted"]);
     optimize_line("stiffness").says(&["N/mm"]);
     let tasks = optimize_line("tasks");
     tasks.says(&["ket8", "ket12", "rj45", "usb", "infill", "\n  typical"]);
     assert!(!tasks.stdout.contains("ur5e"), "one place lists robots");
+    for text in [&trial.stdout, &tasks.stdout] {
+        assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
+    }
     assert!(optimize_line("stiffness --json").json()["models"].is_array());
     let help = optimize_line("--help");
     help.says(&["--budget", "Example: optimize --task usb --budget 200"]);
@@ -169,6 +173,23 @@ fn the_short_help_is_a_screen_and_the_long_one_has_every_option_below_a_heading(
 }
 
 #[test]
+fn help_is_wrapped_and_true_of_each_command() {
+    for command in finger_opt::commands::COMMANDS {
+        let help = optimize(&[command.path, &["--help"]].concat());
+        let long = help.succeeds().lines().find(|line| line.chars().count() > 100);
+        assert_eq!(long, None, "{:?}", command.path);
+        // These take several tasks; these can take more than two seconds.
+        let words = help.stdout.split_whitespace().collect::<Vec<_>>().join(" ");
+        let several = matches!(command.path, ["study" | "calibrate"]);
+        let told = words.contains("a task file; several separated by commas");
+        assert_eq!(told, several, "{:?}", command.path);
+        let slow =
+            matches!(command.path, ["evaluate"] | ["task", "new" | "import" | "check" | "tune"]);
+        assert!(!slow || words.contains("--quiet Show no progress"), "{:?}", command.path);
+    }
+}
+
+#[test]
 fn the_project_file_gives_defaults_that_options_precede() {
     let studies = Studies::new();
     let folder = |name: &str| studies.dir(name);
@@ -178,13 +199,14 @@ fn the_project_file_gives_defaults_that_options_precede() {
     };
     studies.file(
         "lab/finger-opt.toml",
-        "task = \"usb\"\nrobot = \"rigid\"\ncell = \"cell.toml\"\nmeasurements = \"bench.csv\"\n",
+        "task = \"usb\"\nrobot = \"rigid\"\nmeasurements = \"bench.csv\"\n",
     );
     let study = "--engine fake --budget 4 --no-levers --no-map --json --out s";
-    // Cell and measurements are not there yet.
+    // The measurements are not there yet.
     let found = lines("lab", study);
     assert_eq!((&found.json()["task"], &found.json()["robot"]), (&"usb".into(), &"rigid".into()));
-    let sets = "finger-opt.toml sets task usb, robot rigid";
+    let sets =
+        "finger-opt.toml sets task usb, robot rigid; measurements bench.csv not used: no such file";
     assert_eq!(found.stderr.lines().next(), Some(sets));
     let recorded = studies.read("lab/s/study.toml");
     assert!(recorded.contains(&format!("project = \"{sets}\"")), "{recorded}");
@@ -201,10 +223,26 @@ fn the_project_file_gives_defaults_that_options_precede() {
     assert!(bench.contains("usb,10,6"), "{bench}");
     lines("lab", "measure check").succeeds();
     // With an identified cell, which contains a robot.
+    let project = studies.read("lab/finger-opt.toml");
+    studies.file("lab/finger-opt.toml", project + "cell = \"cell.toml\"\n");
+    let evaluate = "evaluate --engine fake --density 20 --direction 10";
+    let missing = ["error: finger-opt.toml: line 4: cell: cell.toml does not exist"];
+    for line in [evaluate, "config"] {
+        lines("lab", line).fails(2, &missing);
+    }
+    lines("lab", "identify --runs runs.csv").fails(2, &["sets task usb, robot rigid\n"]);
     studies.file("lab/cell.toml", include_str!("fixtures/v0.5.0/cell.toml"));
-    let cell = lines("lab", "evaluate --engine fake --density 20 --direction 10").stderr;
-    let sets = "finger-opt.toml sets task usb, cell cell.toml, measurements bench.csv";
-    assert_eq!(cell.lines().next(), Some(sets));
+    for (more, sets) in [
+        (
+            "",
+            "task usb, cell cell.toml, measurements bench.csv; robot rigid not used: cell cell.toml",
+        ),
+        (" --robot servo", "task usb, measurements bench.csv; cell cell.toml not used: --robot"),
+    ] {
+        let found = lines("lab", &format!("{evaluate}{more}")).stderr;
+        assert_eq!(found.lines().next(), Some(&*format!("finger-opt.toml sets {sets}")));
+    }
+    lines("lab", "config").says(&["rigid                    (finger-opt.toml; not used: the cell"]);
     let next = lines("lab", "next --engine fake --no-cache --simulations 16 --samples 20").stderr;
     assert!(next.contains("sets task usb, priors cell.toml, measurements bench.csv"), "{next}");
     studies.file("lab/finger-opt.toml", "seed = 3\n");
@@ -212,6 +250,11 @@ fn the_project_file_gives_defaults_that_options_precede() {
         .fails(2, &["finger-opt.toml", "seed: belongs to one study; give --seed"]);
     studies.file("lab/finger-opt.toml", "task = \"usb,kett\"\n");
     lines("lab", "config").fails(2, &["finger-opt.toml: ", "`kett`", "ket8, ket12, rj45, usb"]);
+    studies.file("lab/finger-opt.toml", "task = \"usb\"\nthreads = 9999\n");
+    for line in [study, "config"] {
+        let problem = "finger-opt.toml: line 2: threads: 9999: must lie between 1 and 1024";
+        lines("lab", line).fails(2, &[problem]);
+    }
     studies.file("lab/finger-opt.toml", "tasks = \"usb\"\n");
     lines("lab", study).fails(2, &["finger-opt.toml", "tasks"]);
 }
@@ -241,6 +284,7 @@ fn bad_usage_is_answered_with_2_and_what_would_be_right() {
         ("--task usb --budget 5 --batch 0", &["--batch"]),
         ("--task usb --budget 5 --threads 0", &["--threads"]),
         ("--task usb --budget 5 --seed -1", &["--seed"]),
+        ("task tune usb --max-force-n -3", &["--max-force-n", "give a number above 0"]),
         ("--task usb --budget 5 --optimizer pg", &["gp, cma-es"]),
         ("--task usb --budget 5 --objective x", &["range, centred-range"]),
         ("--task usb --budget 5 --constraint peak-forc<=3", &["did you mean `peak-force`"]),

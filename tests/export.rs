@@ -171,6 +171,7 @@ fn every_format_of_a_studys_best_finger_is_written() {
     assert!(folder.join("f-outline.stl").is_file() && folder.join("f-base.stl").is_file());
     export("sheet", "sheet.pdf").fails(2, &["sheet.pdf", ".svg or .html"]);
     export("stl", "f.3MF").fails(2, &["--format stl", "f.3MF", "must end in .stl"]);
+    export("prusaslicer-3mf", "f.gcode").fails(2, &["f.gcode", "must end in .3mf"]);
     export("dxf", "f.html").fails(2, &["--format dxf", "must end in .dxf"]);
     optimize_line(&format!("export finger {} --out f.txt", study.display()))
         .fails(2, &["--out f.txt", "must end in one of .3mf, .curaprofile, .dxf"]);

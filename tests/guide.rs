@@ -55,6 +55,11 @@ fn follow(page: &str, folder: &Studies) -> usize {
                     count += 1;
                 }
             }
+            // A line to be added to the project file.
+            "toml" if block.lines[0].starts_with("cell = ") => {
+                let project = folder.read("finger-opt.toml");
+                folder.file("finger-opt.toml", format!("{project}\n{}\n", block.lines[0]));
+            }
             "text" if block.lines[0].starts_with("success rate") => {
                 for line in &block.lines {
                     assert!(printed.contains(line), "{page}: `{line}` is not in:\n{printed}");

@@ -7,6 +7,7 @@ use crate::layout::wrapped;
 use crate::progress::cost;
 use crate::setup::bench::{BenchRequest, CalibrationRequest, Prepared, folds};
 use crate::setup::measured;
+use crate::setup::request::several;
 use calibration::bench::Settings;
 use calibration::calibrate::Calibration;
 use calibration::table;
@@ -21,6 +22,7 @@ use study::write_file;
 #[derive(Debug, Clone, clap::Args)]
 #[command(
     display_order = 20,
+    mut_arg("tasks", several),
     after_help = "Example: optimize calibrate --task ket8 --measurements published --out results/ket8-bench"
 )]
 pub struct Request {

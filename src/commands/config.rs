@@ -4,7 +4,7 @@ use crate::command::{self, Output};
 use crate::context::Context;
 use crate::failure::Failure;
 use crate::layout::lines;
-use crate::project::{PROJECT_FILE, Project, Settings};
+use crate::project::{PROJECT_FILE, Project, Settings, exists};
 use crate::setup::files::robot;
 use crate::setup::request::{DEFAULT_ROBOT, DEFAULT_SPACE};
 use crate::setup::task::{read_space, read_task};
@@ -33,14 +33,16 @@ impl command::Request for Request {
     }
 }
 
-/// Checks the names of tasks, robot and space. The other files may not exist yet: commands create them.
-fn check(Project { file, settings }: &Project) -> Result<(), Failure> {
-    let Settings { task, robot: of_robot, space, .. } = settings;
-    let tasks = task.iter().flat_map(|tasks| tasks.split(',')).map(|name| read_task(name).err());
-    let robot = of_robot.iter().map(|name| robot(name).err());
-    let space = space.iter().map(|name| read_space(name).err());
-    let problem = tasks.chain(robot).chain(space).flatten().next();
-    problem.map_or(Ok(()), |problem| Err(Failure::in_file(file, problem)))
+/// Checks the names of tasks, robot, cell and space. The measurements may not exist yet.
+fn check(project: &Project) -> Result<(), Failure> {
+    let Settings { task, robot: of_robot, space, .. } = &project.settings;
+    let tasks = task.iter().flat_map(|tasks| tasks.split(','));
+    let tasks = tasks.map(|name| ("task", read_task(name).err()));
+    let robot = of_robot.iter().map(|name| ("robot", robot(name).err()));
+    let space = space.iter().map(|name| ("space", read_space(name).err()));
+    let mut all = tasks.chain(robot).chain(space);
+    let problem = all.find_map(|(key, problem)| Some(project.fault(key, problem?)));
+    problem.map_or_else(|| project.check_cell(), Err)
 }
 
 fn text(file: Option<&str>, settings: Settings) -> String {
@@ -48,6 +50,8 @@ fn text(file: Option<&str>, settings: Settings) -> String {
     let none = format!("no {PROJECT_FILE} in this folder or above");
     let from = file.unwrap_or_default();
     let threads = threads.map(|count| count.to_string());
+    let contained = cell.as_ref().map(|_| "; not used: the cell contains one");
+    let missing = measurements.as_ref().filter(|name| !exists(name)).map(|_| "; no such file yet");
     let rows = [
         ("task", task, "none"),
         ("robot", robot, DEFAULT_ROBOT),
@@ -61,7 +65,13 @@ fn text(file: Option<&str>, settings: Settings) -> String {
             Some(value) => (value.as_str(), from),
             None => (default, "default"),
         };
-        (key.to_owned(), format!("{value:<24} ({origin})"))
+        let remark = match key {
+            "robot" => contained,
+            "measurements" => missing,
+            _ => None,
+        };
+        let remark = remark.filter(|_| set.is_some()).unwrap_or_default();
+        (key.to_owned(), format!("{value:<24} ({origin}{remark})"))
     });
     let first = ("file".to_owned(), file.map_or(none, str::to_owned));
     lines(std::iter::once(first).chain(rows))

@@ -82,6 +82,8 @@ pub struct Evaluated {
 }
 
 impl command::Request for Request {
+    const PROGRESS: bool = true;
+
     fn run(&self, context: &Context<'_>) -> Result<Output, Failure> {
         let found = self.evaluated(context)?;
         Ok(Output::new(found.text(), found))
@@ -95,6 +97,7 @@ impl Request {
     /// If an input cannot be used, or the run is cancelled.
     pub fn evaluated(&self, context: &Context<'_>) -> Result<Evaluated, Failure> {
         let stop = context.stop;
+        let _busy = context.busy("simulating the finger");
         let (setup, plan) = self.prepared()?;
         let chosen = self.finger.choose(&setup)?;
         let measured = self.measured(&chosen)?;

@@ -43,7 +43,7 @@ pub struct Request {
     #[arg(long, value_name = "NAME", default_value = DEFAULT_FINGER)]
     pub finger: String,
     /// Position of the first rib, mm [default: that of the finger file]
-    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+    #[arg(long, value_name = "MM")]
     pub phase_mm: Option<f64>,
     /// A number of the finger file, for example finger.skin.thickness_mm=0.8; may be given several times
     #[arg(long, value_name = "KEY=VALUE", value_parser = setting)]

@@ -5,7 +5,7 @@ use crate::context::Context;
 use crate::failure::{Failure, within};
 use crate::setup::bench::DEFAULT_PRIORS;
 use crate::setup::files::{DEFAULT_FINGER, find};
-use crate::setup::request::{DEFAULT_ROBOT, DEFAULT_SPACE, SetupRequest};
+use crate::setup::request::{DEFAULT_ROBOT, DEFAULT_SPACE, SetupRequest, several};
 use crate::setup::run::RunRequest;
 use crate::setup::words::WordParser;
 use crate::setup::{Setup, measured};
@@ -37,22 +37,26 @@ const DEFAULT_UNCERTAINTY: &str = "typical";
 ///
 /// Running the same command again continues the study. The name may be left out.
 #[derive(Debug, Clone, clap::Args)]
-#[command(display_order = 1, after_help = "Example: optimize study --task usb --budget 200")]
+#[command(
+    display_order = 1,
+    mut_arg("tasks", several),
+    after_help = "Example: optimize study --task usb --budget 200"
+)]
 pub struct Request {
     /// Tasks, robot, space, finger model.
     #[command(flatten)]
     pub setup: SetupRequest,
     /// Total number of evaluations; to continue, run the same command with a larger one [default: until no
     /// design is expected to gain 0.3 mm, at most 500; 200 for other optimizers and objectives]
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(1..=LARGEST_BUDGET))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=LARGEST_BUDGET))]
     pub budget: Option<u64>,
     /// Up to N further evaluations by Nelder-Mead from the best design; the budget of such a study cannot be
     /// raised
     #[arg(long, value_name = "N", num_args = 0..=1, default_value_t = 0, default_missing_value = "20",
-          allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(0..=LARGEST_BUDGET))]
+          value_parser = clap::value_parser!(u64).range(0..=LARGEST_BUDGET))]
     pub polish: u64,
     /// Smallest relevant difference of ranges, mm: designs that lose less count as ties
-    #[arg(long, value_name = "MM", default_value_t = INDIFFERENCE_MM, allow_negative_numbers = true)]
+    #[arg(long, value_name = "MM", default_value_t = INDIFFERENCE_MM)]
     pub indifference_mm: f64,
     /// Optimizer
     #[arg(long, value_name = "NAME", default_value = "gp",
@@ -81,16 +85,16 @@ pub struct Request {
     #[arg(long, value_enum)]
     pub aggregate: Option<AggregateKind>,
     /// Weights of the tasks, separated by commas, for --aggregate weighted
-    #[arg(long, value_name = "W,W..", value_delimiter = ',', allow_negative_numbers = true)]
+    #[arg(long, value_name = "W,W..", value_delimiter = ',')]
     pub weights: Vec<f64>,
     /// Seed; the same seed gives the same study
     // TOML has signed 64-bit integers.
-    #[arg(long, value_name = "N", allow_negative_numbers = true, default_value_t = 0,
+    #[arg(long, value_name = "N", default_value_t = 0,
           value_parser = clap::value_parser!(u64).range(0..=i64::MAX as u64))]
     pub seed: u64,
     /// Number of designs per batch; part of the study, unlike --threads [default: unchanged if the study
     /// continues; otherwise 4, or with --executor the number of its workers]
-    #[arg(long, value_name = "N", allow_negative_numbers = true,
+    #[arg(long, value_name = "N",
           value_parser = clap::value_parser!(u64).range(1..=LARGEST_BATCH))]
     pub batch: Option<u64>,
     /// Propose a new design after each result, so that no worker waits for the slowest of a batch; the

@@ -3,6 +3,7 @@
 use crate::command::{self, Output};
 use crate::context::Context;
 use crate::failure::Failure;
+use crate::layout;
 use crate::setup::task::TaskFile;
 use connector::seat::clearance;
 use input::shipped::{COMMERCIAL, SPACES, Shipped, Source, TASKS, UNCERTAINTIES};
@@ -30,7 +31,7 @@ impl command::Request for Request {
              uncertainties\n{uncertainty_lines}"
         );
         let value = json!({"tasks": tasks, "spaces": spaces, "uncertainties": uncertainties});
-        Ok(Output::new(text, value))
+        Ok(Output::new(layout::wrapped(&text), value))
     }
 }
 

@@ -49,7 +49,7 @@ pub struct Request {
     #[command(flatten)]
     pub finger: FingerRequest,
     /// Shift of the start along y, mm
-    #[arg(long, value_name = "MM", allow_negative_numbers = true, default_value_t = 0.0,
+    #[arg(long, value_name = "MM", default_value_t = 0.0,
           value_parser = offset)]
     pub offset_mm: f64,
     /// Repeats at that offset.
@@ -101,7 +101,7 @@ impl command::Request for Request {
     fn run(&self, context: &Context<'_>) -> Result<Output, Failure> {
         let done = self.done(context)?;
         let written = layout::wrote(self.svg.iter().chain(&self.log).chain(self.film.files()));
-        Ok(Output::new(done.text() + &written, done))
+        Ok(Output::new(layout::wrapped(&done.text()) + &written, done))
     }
 }
 

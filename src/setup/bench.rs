@@ -26,7 +26,7 @@ pub const DEFAULT_PRIORS: &str = "bench";
 /// Tasks and their measurements on a bench; by default, the only task of the measurements.
 #[derive(Debug, Clone, clap::Args)]
 #[command(mut_arg("tasks", |task| task.required(false).default_value("").hide_default_value(true).help(
-    "Task: ket8, ket12, rj45, usb, rj45_latch, usb_a, or the path of a task file; several separated by commas \
+    "Task: ket8, ket12, rj45, usb, rj45_latch, usb_a, or the path of a task file \
      [default: that of the measurements, if they are of one]"
 )))]
 pub struct BenchRequest {

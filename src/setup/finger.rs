@@ -35,10 +35,10 @@ pub(crate) fn setting(text: &str) -> Result<(String, f64), String> {
 #[derive(Debug, Clone, Copy, Default, PartialEq, clap::Args)]
 pub struct InfillRequest {
     /// Infill density, percent
-    #[arg(long, value_name = "PERCENT", allow_negative_numbers = true)]
+    #[arg(long, value_name = "PERCENT")]
     pub density: Option<f64>,
     /// Infill direction, degrees
-    #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
+    #[arg(long, value_name = "DEG")]
     pub direction: Option<f64>,
 }
 
@@ -70,12 +70,10 @@ pub struct FingerRequest {
     #[command(flatten)]
     pub infill: InfillRequest,
     /// Stiffness in the compliance direction, N/mm: bypasses the surrogate
-    #[arg(long, value_name = "K", requires = "stiffness_assembly", value_parser = stiffness,
-          allow_negative_numbers = true)]
+    #[arg(long, value_name = "K", requires = "stiffness_assembly", value_parser = stiffness)]
     pub stiffness_compliance: Option<f64>,
     /// Stiffness in the direction of assembly, N/mm: bypasses the surrogate
-    #[arg(long, value_name = "K", requires = "stiffness_compliance", value_parser = stiffness,
-          allow_negative_numbers = true)]
+    #[arg(long, value_name = "K", requires = "stiffness_compliance", value_parser = stiffness)]
     pub stiffness_assembly: Option<f64>,
     /// A number of the task or the finger, as in spaces/codesign.toml; may be given several times
     #[arg(long, value_name = "KEY=VALUE", value_parser = setting)]

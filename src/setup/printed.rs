@@ -27,7 +27,7 @@ pub struct PrintRequest {
     #[arg(long, value_name = "NAME")]
     pub finger: Option<String>,
     /// Position of the first rib, mm [default: as in the finger file]
-    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+    #[arg(long, value_name = "MM")]
     pub phase_mm: Option<f64>,
 }
 

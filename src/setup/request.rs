@@ -3,6 +3,7 @@
 use super::Setup;
 use super::files::{DEFAULT_FINGER, Fingers, find, stiffness_data};
 use crate::failure::Failure;
+use clap::Arg;
 use connector::mesh::axes::value;
 use input::shipped::{COMMERCIAL, FINGERS, ROBOTS, SPACES, Source, TASKS, resolve};
 use insertion::evaluation::cell::Priors;
@@ -73,8 +74,7 @@ impl TaskSource {
 /// Options of a trial, an evaluation, a calibration and a study.
 #[derive(Debug, Clone, clap::Args)]
 pub struct SetupRequest {
-    /// Task: ket8, ket12, rj45, usb, rj45_latch, usb_a, or the path of a task file; a study may have several, separated
-    /// by commas
+    /// Task: ket8, ket12, rj45, usb, rj45_latch, usb_a, or the path of a task file
     // clap takes a field of type `Vec` for a repeated option, but not `std::vec::Vec`: one value is the whole list.
     #[arg(long = "task", value_name = "NAME", value_parser = |names: &str| Ok::<_, Infallible>(TaskSource::list(names)))]
     pub tasks: std::vec::Vec<TaskSource>,
@@ -99,6 +99,12 @@ pub struct SetupRequest {
     /// How the nominal start is chosen [default: as in the task file]
     #[arg(long, value_enum)]
     pub start: Option<StartRule>,
+}
+
+/// Adds to the help of the option `--task` that it may be given several.
+pub(crate) fn several(tasks: Arg) -> Arg {
+    let help = tasks.get_help().map(ToString::to_string).unwrap_or_default();
+    tasks.help(help.replace("a task file", "a task file; several separated by commas"))
 }
 
 /// Finger model: source of the remote centre of compliance and of the stiffnesses that were not measured, for example

@@ -5,10 +5,13 @@ use crate::failure::Failure;
 use calibration::bench::Settings;
 use input::shipped::nearest;
 use rayon::ThreadPool;
+use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 use study::{AnalysisSettings, BenchEffort, Cache};
 
+/// Accepted numbers of threads.
+pub const THREADS: RangeInclusive<i64> = 1..=1024;
 const CACHE: &str = "results/.cache";
 /// Default effort of a bench prediction.
 const EFFORT: BenchEffort = BenchEffort { simulations: 200, samples: 300 };
@@ -68,7 +71,7 @@ pub(crate) fn settings(effort: BenchEffort, seed: u64, stop: &AtomicBool) -> Set
 #[derive(Debug, Clone, Default, clap::Args)]
 pub struct RunRequest {
     /// Threads [default: one per processor]; changes no result
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(THREADS))]
     pub threads: Option<u16>,
     /// Cache of evaluations.
     #[command(flatten)]

@@ -81,11 +81,23 @@ pub fn brief(name: &str, tuned: &Tuned) -> String {
 pub fn tried(tuned: &Tuned) -> String {
     let searched = tuned.steps.iter().filter(|step| step.stage == Stage::Search).count();
     let named = tuned.steps.iter().filter(|step| step.stage != Stage::Search);
-    let mut all: Vec<_> = named.map(|step| step.change.clone()).collect();
+    let mut all = distinct(named.map(|step| step.change.as_str()));
     if searched > 0 {
         all.push(format!("{searched} variations of tilt, strokes, preload and speed"));
     }
-    all.join(", ")
+    all.join("; ")
+}
+
+/// Returns each change once; one with a slower push is not another one.
+fn distinct<'a>(changes: impl Iterator<Item = &'a str>) -> Vec<String> {
+    let mut all: Vec<String> = Vec::new();
+    for change in changes {
+        let change = change.split(", push slowed").next().unwrap_or(change);
+        if !all.iter().any(|known| known == change) {
+            all.push(change.to_owned());
+        }
+    }
+    all
 }
 
 /// Returns the result of a strategy as text.
@@ -164,5 +176,13 @@ mod tests {
         assert!(text.ends_with("with one of those has 4.4 mm"), "{text}");
         let text = told(vec![step(0.0, 6.0, None), step(5.0, -1.0, None)]).unwrap();
         assert!(text.ends_with("no strategy found with one of those inserts"), "{text}");
+    }
+
+    #[test]
+    fn a_strategy_tried_in_two_stages_or_with_a_slower_push_is_named_once() {
+        let tried = ["as it is", "start taught, +0.0 mm in y", "like a key"];
+        let slowed = "start taught, +0.0 mm in y, push slowed to 12 mm/s";
+        let changes = tried.into_iter().chain([slowed, "like a key", "like a round peg"]);
+        assert_eq!(distinct(changes), [&tried[..], &["like a round peg"]].concat());
     }
 }

@@ -32,8 +32,7 @@ fn answer_text(answer: &Answer, dir: &Path, verbose: &str) -> String {
     text += verbose;
     // Not wrapped, so that it can be copied.
     let (command, why) = command::next(answer, dir);
-    let page = dir.join(PAGE);
-    let place = format!("study         {} (see {})\n", dir.display(), page.display());
+    let place = format!("study         {} (see {PAGE})\n", dir.display());
     format!("{}next          {command}\n              # {why}\n{place}", layout::wrapped(&text))
 }
 

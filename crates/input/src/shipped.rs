@@ -123,7 +123,7 @@ pub fn resolve(kind: &str, shipped: &[Shipped], name: &str) -> Result<Source, Re
     };
     let list = if kind == "robot" { " (see `optimize robots`)" } else { "" };
     let text = format!(
-        "unknown {kind} `{name}`{hint}; available{list}: {}, or give the path of a file",
+        "unknown {kind} `{name}`{hint}\navailable{list}: {}, or give the path of a file",
         names.join(", ")
     );
     Err(RequestError { place: Place::default().key(&kind.replace(' ', "_")), text })
@@ -148,10 +148,10 @@ mod tests {
     #[test]
     fn the_beginning_of_names_suggests_them_all() {
         let error = |name: &str| resolve("robot", ROBOTS, name).unwrap_err().to_string();
-        let text = "unknown robot `ur5` (did you mean `ur5e_position` or `ur5e`?); available (see `optimize robots`): \
+        let text = "unknown robot `ur5` (did you mean `ur5e_position` or `ur5e`?)\navailable (see `optimize robots`): \
                     servo, rigid, ur5e_position, ur5e, or give the path of a file";
         assert_eq!(error("ur5"), text);
         assert!(error("rigit").contains("(did you mean `rigid`?)"));
-        assert!(error("").contains("robot ``; available"));
+        assert!(error("").contains("robot ``\navailable"));
     }
 }

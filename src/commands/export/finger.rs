@@ -125,8 +125,9 @@ impl Request {
         let extension = extension(&self.out);
         let fits = |format: &&Format| format.extensions().contains(&&*extension);
         let of_extension = Format::value_variants().iter().find(fits);
+        // A device has no extension.
         match (self.format, of_extension) {
-            (Some(format), Some(_)) if !fits(&&format) => {
+            (Some(format), _) if !extension.is_empty() && !fits(&&format) => {
                 let accepted = format.extensions().iter().map(|name| format!(".{name}"));
                 let accepted = accepted.collect::<Vec<_>>().join(" or ");
                 let (name, out) = (value(format), self.out.display());

@@ -31,24 +31,19 @@ pub struct Request {
     #[arg(long, value_name = "NAME")]
     pub task: Option<String>,
     /// Infill density, percent
-    #[arg(long, value_name = "PERCENT", allow_negative_numbers = true)]
+    #[arg(long, value_name = "PERCENT")]
     pub density: Option<String>,
     /// Infill direction, degrees
-    #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
+    #[arg(long, value_name = "DEG")]
     pub direction: Option<String>,
     /// Most negative start that inserted, mm
-    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+    #[arg(long, value_name = "MM")]
     pub negative_mm: Option<String>,
     /// Most positive start that inserted, mm
-    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+    #[arg(long, value_name = "MM")]
     pub positive_mm: Option<String>,
     /// Width of the window, mm
-    #[arg(
-        long,
-        value_name = "MM",
-        allow_negative_numbers = true,
-        conflicts_with = "not_measurable"
-    )]
+    #[arg(long, value_name = "MM", conflicts_with = "not_measurable")]
     pub range_mm: Option<String>,
     /// The finger was tested, but no range could be measured
     #[arg(long)]
@@ -63,7 +58,7 @@ pub struct Request {
     #[arg(long, value_name = "N")]
     pub repeats: Option<String>,
     /// Largest contact force, N
-    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    #[arg(long, value_name = "N")]
     pub peak_force_n: Option<String>,
     /// Day, YYYY-MM-DD
     #[arg(long, value_name = "DAY")]

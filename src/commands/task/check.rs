@@ -37,7 +37,10 @@ pub struct Request {
 }
 
 impl command::Request for Request {
+    const PROGRESS: bool = true;
+
     fn run(&self, context: &Context<'_>) -> Result<Output, Failure> {
+        let _busy = context.busy("simulating the start");
         let checked = TaskCheck::of(self.file.read()?, &self.robot, self.engine, context.stop)?;
         let drawing = checked.task.as_ref().map(picture::svg);
         let written = self.svg.as_ref().zip(drawing.as_ref());

@@ -53,13 +53,18 @@ pub struct Request {
 }
 
 impl command::Request for Request {
+    const PROGRESS: bool = true;
+
     fn run(&self, context: &Context<'_>) -> Result<Output, Failure> {
         let stop = context.stop;
         let out = &self.pair.out();
         within("--depth-mm", self.pair.depth_mm, &(0.4..=300.0))?;
         check_is_new(out)?;
+        let busy = context.busy("making the task from the shapes");
         let mut mated = self.mated_task(context)?;
         not_stopped(stop)?;
+        drop(busy);
+        let _busy = context.busy("trying strategies");
         let (task, tuned) = tune_new(mated.made.task, self.engine, stop)?;
         mated.made.task = task;
         let written = self.write(out, &mated)?;

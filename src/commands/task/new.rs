@@ -83,7 +83,10 @@ pub struct Request {
 }
 
 impl command::Request for Request {
+    const PROGRESS: bool = true;
+
     fn run(&self, context: &Context<'_>) -> Result<Output, Failure> {
+        let _busy = context.busy("trying strategies");
         let like = self.like.as_deref().map(read_task).transpose()?;
         let (text, tuned) = match (&like, tip(self)) {
             (Some(like), None) => (copy(&self.name, like), None),

@@ -261,10 +261,12 @@ fn json(TunedTask { tuner, tuned, after, written }: &TunedTask<'_>) -> Value {
 /// Returns the error if no strategy inserts.
 fn failure(file: &str, TunedTask { tuner, tuned, after, .. }: &TunedTask<'_>) -> Option<Failure> {
     let within = tuned.least_force_n().zip(tuner.limits.force);
-    let within = within.map_or(String::new(), |(least, limit)| {
-        format!(" with at most {limit:.0} N (at least {least:.0} N; see --max-force-n)")
+    let (within, accepted) = within.map_or(Default::default(), |(least_n, limit_n)| {
+        let accepted = format!("\naccepted: --max-force-n of {:.0} or more", least_n.ceil());
+        (format!(" with at most {limit_n:.0} N"), accepted)
     });
-    let problem = format!("{file}: no strategy inserts{within}; tried: {}", tried(tuned));
+    let tried = wrapped(&format!("tried:        {}", tried(tuned)));
+    let problem = format!("{file}: no strategy inserts{within}\n{tried}{accepted}");
     after.is_none().then(|| Failure::running(problem))
 }
 

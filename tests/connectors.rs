@@ -311,8 +311,52 @@ fn a_shell_with_nine_pins_goes_about_their_block() {
 
 #[test]
 fn a_bar_goes_through_a_plate() {
-    let found = inserts(&Studies::new(), "through", through(), [0.2, 0.2]);
+    let folder = Studies::new();
+    let found = inserts(&folder, "through", through(), [0.2, 0.2]);
     assert!(found["found"].to_string().contains("nothing stops the plug: 5.00 mm"), "{found}");
+    // No more of it can be below the top than there is.
+    let again = ["--plug", &folder.word("through-plug.stl"), "--depth-mm", "300"];
+    let [socket, out] = ["through-socket.stl", "deep.toml"].map(|name| folder.word(name));
+    optimize(&[&["task", "import"], &again[..], &["--socket", &socket, "--out", &out]].concat())
+        .fails(2, &["--depth-mm 300: the plug is 30.00 mm long", "give at most 30 mm"]);
+    assert!(!folder.dir("deep.toml").exists() && !folder.dir("deep.place.svg").exists());
+}
+
+/// Plate with two slots for a bar, the second 0.1 mm deeper.
+fn slots() -> [Vec<Block>; 2] {
+    let z = [-8.1, 0.0];
+    let across = [[-9.0, -4.1], [4.1, 15.9], [24.1, 29.0]].map(|y| block([-2.1, 2.1], y, z));
+    let along = [[-7.0, -2.1], [2.1, 7.0]].map(|x| block(x, [-9.0, 29.0], z));
+    let floor = block([-7.0, 7.0], [-9.0, 29.0], [-12.0, -8.1]);
+    let step = block([-2.1, 2.1], [-4.1, 4.1], [-8.1, -8.0]);
+    let [plug, _] = through();
+    [plug, [&across[..], &along[..], &[floor, step]].concat()]
+}
+
+#[test]
+fn another_of_several_poses_can_be_taken() {
+    let folder = Studies::new();
+    let [plug, socket] = slots();
+    let plug = folder.file("plug.stl", stl(&plug, [0, 1, 2]));
+    let socket = folder.file("socket.stl", stl(&socket, [0, 1, 2]));
+    let out = folder.word("second.toml");
+    let take = |pose: &str| {
+        let words = ["task", "import", "--json", "--plug", &plug, "--socket", &socket];
+        optimize(&[&words[..], &["--out", &out, "--pose", pose]].concat())
+    };
+    for pose in ["0", "3"] {
+        take(pose).fails(2, &["--pose", "between 1 and 2"]);
+    }
+    let found = take("2").json();
+    let pose = |i: usize, key: &str| found["poses"][i][key].as_f64().unwrap();
+    let depths = [0, 1].map(|i| pose(i, "depth_mm"));
+    assert!((depths[0] - 8.1).abs() < 0.03 && (depths[1] - 8.0).abs() < 0.03, "{found}");
+    assert_eq!(found["poses"][1]["insert_along"], "-z");
+    assert!(found["poses"][0]["origin_mm"] != found["poses"][1]["origin_mm"], "{found}");
+    let said = found["found"].to_string();
+    for words in ["2 is taken (--pose): 1 along -z, 8.1", "; 2 along -z, 8.0", "mate 8.0"] {
+        assert!(said.contains(words), "{words} in {said}");
+    }
 }
 
 /// One shape as drawn, with triangles missing where nothing touches it, and with 60 000 facets.
@@ -402,6 +446,43 @@ fn a_depth_that_no_connector_has_is_refused() {
         let ran = optimize(&[&words[..], &[&format!("--depth-mm={depth}")]].concat());
         ran.fails(2, &["--depth-mm", "between 0.4 and 300"]);
     }
+}
+
+#[test]
+fn a_handle_that_the_pads_cannot_hold_is_refused() {
+    for size in ["1x1x1", "10x12x2.9", "10x0.9x20", "101x12x20", "0.9x12x20"] {
+        let ran = optimize(&["task", "import", "p.stl", "--body", size]);
+        ran.fails(2, &["--body: is", "1 to 100 mm between the jaws", "a length of at least 3 mm"]);
+    }
+    optimize(&["task", "import", "p.stl", "--body", "10x12x3"]).fails(2, &["p.stl"]);
+}
+
+#[test]
+fn what_names_no_plug_is_told_how() {
+    optimize(&["task", "import"]).fails(2, &["ASSEMBLY", "--plug <P.stl>"]);
+    optimize(&["task", "import", "a.stl", "--plug", "p.stl"]).fails(2, &["cannot be used with"]);
+    optimize(&["task", "import", "a.stl", "--socket", "s.stl"]).fails(2, &["cannot be used with"]);
+    let folder = Studies::new();
+    let [plug, _] = through();
+    // The name of the only body tells nothing about its shells.
+    let one = folder.file(
+        "one.stl",
+        solid("", &[plug[0], plug[0].map(|[x, y, z]| [x + 9.0, y, z])], [0, 1, 2]),
+    );
+    optimize(&["task", "import", "--plug", &one]).fails(2, &["has the bodies `1`, `2`: give"]);
+}
+
+/// The pose is right, the depth is not.
+#[test]
+fn a_plug_is_not_pushed_below_its_seat() {
+    let folder = Studies::new();
+    let [plug, socket] = ["plug", "socket"]
+        .map(|body| format!("{}/examples/meshes/keyed-{body}.stl", env!("CARGO_MANIFEST_DIR")));
+    let out = folder.word("deep.toml");
+    let pair = ["--plug", &plug, "--socket", &socket, "--out", &out, "--depth-mm", "12"];
+    let ran = optimize(&[&["task", "import"], &pair[..]].concat());
+    ran.fails(2, &["the plug stops 7.", "give at most that as --depth-mm"]);
+    assert!(!folder.dir("deep.toml").exists());
 }
 
 #[test]

@@ -24,7 +24,7 @@ fn blocks(page: &str) -> Vec<Block> {
     blocks
 }
 
-/// The words of a command: studies and shares of variance on the fake engine, identification of few numbers.
+/// The words of a command: studies, tuning and shares of variance on the fake engine, identification of few numbers.
 fn quick(line: &str) -> Vec<String> {
     let words = line.split_whitespace().skip(1);
     let mut words: Vec<_> = words.map(|word| word.replace('\'', "")).collect();
@@ -32,6 +32,7 @@ fn quick(line: &str) -> Vec<String> {
         words[at + 1] = "8".to_owned();
     }
     let more = match words[0].as_str() {
+        "task" if words[1] == "tune" => ["--engine", "fake"],
         "sensitivity" | "next" => ["--engine", "fake"],
         "identify" => ["--priors", "few.toml"],
         study if study.starts_with("--") => ["--engine", "fake"],

@@ -4,7 +4,7 @@ use crate::common::shipped::{finger, rig};
 use crate::common::{Ran, Studies, optimize, optimize_line};
 use connector::check::problems;
 use connector::draft::{Dimensions, Size, draft};
-use connector::mesh::{Surface, pick, read};
+use connector::mesh::{Body, Surface, pick, read};
 use connector::nominal::explain;
 use finger_opt::setup::task::TaskFile;
 use input::shipped::TASKS;
@@ -230,6 +230,23 @@ fn a_round_task_is_written_with_the_error_of_its_hole() {
     new("--round 8x8").fails(2, &["--round", "8 mm long"]);
 }
 
+/// The opening is that below the chamfer; one that lies in the wall or in the air is noticed all the same.
+#[test]
+fn a_chamfered_opening_is_where_its_walls_begin() {
+    let plain = drafted("8x4x8", 0.2, Some("12x12x20"));
+    for leg_mm in [0.1, 0.3, 0.5, 1.0, 2.0] {
+        let task = plain.chamfered(leg_mm * MM);
+        assert_eq!(problems(&task), [], "{leg_mm}");
+        for off_mm in [-0.3, leg_mm + 0.3] {
+            let [x, [low, high]] = task.opening;
+            let wrong = [x, [low, high + off_mm * MM]];
+            let found = problems(&Task { opening: wrong, ..task.clone() });
+            let noticed = found.iter().any(|of| of.key == "socket.opening_y_mm");
+            assert!(noticed, "{leg_mm} {off_mm}: {found:?}");
+        }
+    }
+}
+
 /// A part that is hardly held tips over, and is told so with what would help.
 #[test]
 fn a_failed_nominal_start_is_explained() {
@@ -379,7 +396,11 @@ fn a_file_may_hold_both() {
         pick(&bodies, &[name.to_owned()], "both.obj").map(|[of, rest]| [of[0][0].x, rest[0][0].x])
     };
     assert_eq!((at("Box"), at("1")), (Ok([5.0, 0.0]), Ok([0.0, 5.0])));
-    assert!(at("Lid").unwrap_err().to_string().contains("`Pin`, `Box`, and shells 1 to 2"));
+    assert!(at("Lid").unwrap_err().to_string().contains("`Pin`, `Box`, shells 1 to 2"));
+    // A binary STL names no body.
+    let nameless = [Body { name: String::new(), ..bodies[0].clone() }];
+    let error = pick(&nameless, &["foo".to_owned()], "one.stl").unwrap_err().to_string();
+    assert!(error.ends_with("has no body `foo`; available: shell 1"), "{error}");
 }
 
 /// The paper's usb, whose plug has 3 mm of room: its shoulder meets the housing at 12.57 mm, as tasks/usb.toml says.
@@ -560,7 +581,8 @@ fn a_key_and_a_chamfer_are_in_the_file_and_the_task_is_shown() {
     let studies = Studies::new();
     let make = |words: &str, name: &str| {
         let new = format!("task new mine {words} --clearance 0.2 --body 12x12x20 --out");
-        optimize_line(&format!("{new} {}", studies.word(name)));
+        let next = "next          optimize task tune";
+        optimize_line(&format!("{new} {}", studies.word(name))).says(&["no problems", next]);
         studies.read(name)
     };
     let keyed = make("--round 8x12 --key 2x1", "keyed.toml");
@@ -569,6 +591,12 @@ fn a_key_and_a_chamfer_are_in_the_file_and_the_task_is_shown() {
     assert!(keyed.contains("name = \"key\"") && keyed.contains("x_mm = [3.8"), "{keyed}");
     let chamfered = make("--plug 8x4x8 --chamfer-mm 0.5", "chamfered.toml");
     assert!(chamfered.contains("shape = \"hull\""), "{chamfered}");
+    make("--plug 8.25x2.4x10 --chamfer-mm 0.3", "slight.toml");
+    let narrow = studies.word("narrow.toml");
+    let new = "task new a --plug 8x4x8 --clearance 0.2 --body 0.6x5x20 --out";
+    let ran = optimize_line(&format!("{new} {narrow}"));
+    ran.fails(1, &["1 problem"]);
+    assert!(!ran.stdout.contains("next  "), "{}", ran.stdout);
     for (words, parts) in [
         ("--plug 8x4x8 --key 2x1", &["--key", "--plug"][..]),
         ("--round 8x12 --chamfer-mm 0.5", &["--chamfer-mm", "--round"]),

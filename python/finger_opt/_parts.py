@@ -37,6 +37,19 @@ class LeftOut(Result):
 
 
 @dataclass(frozen=True, repr=False)
+class MatedPose(Result):
+    """Pose in which the plug can be mated."""
+
+    insert_along: str
+    #: Depth over which plug and socket engage, mm.
+    depth_mm: float
+    #: Angle between this pose and the first, degrees.
+    turn_deg: float
+    #: Place of the origin of the plug's file, in the file of the socket, mm.
+    origin_mm: tuple[float, float, float]
+
+
+@dataclass(frozen=True, repr=False)
 class Imported(Result):
     """Imported task, with the fields of ``optimize task import --json``."""
 
@@ -48,6 +61,8 @@ class Imported(Result):
     unit: str
     insert_along: str
     jaws: str
+    #: Mated poses that were found, the best first; ``pose`` takes one.
+    poses: tuple[MatedPose, ...]
     #: Settings that were derived from the shapes, with reasons.
     found: tuple[str, ...]
     clearance_mm: float
@@ -80,6 +95,7 @@ def import_parts(
     out: StrPath | None = None,
     unit: Literal["mm", "in", "m"] | None = None,
     insert_along: Along | None = None,
+    pose: int | None = None,
     jaws: Literal["x", "y", "z"] | None = None,
     plug_body: str | Iterable[str] | None = None,
     socket_body: str | Iterable[str] | None = None,
@@ -104,6 +120,7 @@ def import_parts(
         out: Task file to write; by default the plug's name with ``.toml``.
         unit: Unit of the files; by default derived from the shapes.
         insert_along: Direction of insertion in the socket's file; by default derived from the shapes.
+        pose: Pose to take, by its number from 1, if several are possible.
         jaws: Axis of the socket's file along which the jaws close; by default derived from the shapes.
         plug_body: Bodies, parts or assemblies that form the plug; in a file of both, the rest is the socket.
         socket_body: The same for the socket.
@@ -153,7 +170,7 @@ def import_parts(
     settings: dict[str, Any] = {
         "plug_body": None if files[0] in steps else names[0],
         "socket_body": None if files[-1] in steps else names[1],
-        "unit": unit, "insert_along": insert_along, "jaws": jaws, "like": like, "engine": engine,
+        "unit": unit, "insert_along": insert_along, "pose": pose, "jaws": jaws, "like": like, "engine": engine,
         "resolution": resolution, "body": body, "depth_mm": depth_mm,
         "names": (str(files[0]), str(files[-1])),
     }

@@ -45,6 +45,9 @@ def test_meshes_are_imported_as_on_the_command_line(meshes, fake, tmp_path, comm
     same = command_json("task", "import", *words, "--out", str(tmp_path / "same.toml"))
     assert {**found.to_dict(), "out": None} == {**same, "out": None}
     assert found.plug_parts > 0 and Path(found.out).exists()
+    assert [pose.insert_along for pose in found.poses] == [found.insert_along]
+    with pytest.raises(fo.InputError, match="pose 2: must lie between 1 and 1"):
+        imported(fake, tmp_path, *meshes, unit="mm", pose=2, out=tmp_path / "second.toml")
     assert shapes(task) == shapes(fo.Task.from_toml(tmp_path / "same.toml"))
 
 

@@ -30,12 +30,13 @@ const STEP: Format = Format {
 
 /// Plug and socket, what is known of their mate, and the task to make of them.
 #[derive(Debug, Clone, clap::Args)]
+#[command(group = clap::ArgGroup::new("files").required(true))]
 pub struct PairRequest {
     /// Mesh of plug and socket in their mated pose; the plug is the part that can be withdrawn
-    #[arg(conflicts_with_all = ["plug", "socket"])]
+    #[arg(group = "files", conflicts_with = "socket")]
     pub assembly: Option<PathBuf>,
     /// Mesh of the plug, or of both
-    #[arg(long, value_name = "P.stl", required_unless_present = "assembly")]
+    #[arg(long, value_name = "P.stl", group = "files")]
     pub plug: Option<PathBuf>,
     /// Mesh of the socket [default: the rest of the plug's file without --plug-body]
     #[arg(long, value_name = "S.stl")]
@@ -53,6 +54,9 @@ pub struct PairRequest {
     /// Direction of insertion in the socket's file [default: the one in which most walls of the two engage]
     #[arg(long, value_name = "AXIS", value_enum, allow_hyphen_values = true)]
     pub insert_along: Option<Along>,
+    /// Pose to take, by its number in the list that is printed if several are possible
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub pose: usize,
     /// Axis of the socket's file along which the jaws close [default: the one across which the plug has two parallel
     /// faces for the pads]
     #[arg(long, value_name = "AXIS", value_enum)]
@@ -146,11 +150,13 @@ pub fn parts(files: Files, request: &PairRequest, context: &Context<'_>) -> Resu
             parts
         }
         (None, None) if both => {
-            let names: Vec<_> = plug.iter().map(|body| format!("`{}`", body.name)).collect();
+            // A body on its own is named by its shells.
+            let bodies = if plug.len() > 1 { plug } else { shells(&plug) };
+            let names: Vec<_> = bodies.into_iter().map(|body| body.name).collect();
             return Err(Failure::usage(format!(
                 "{} has the bodies {}: give --socket, or name those of the plug with --plug-body",
                 files[0],
-                names.join(", ")
+                quoted(&names)
             )));
         }
         (None, None) => [all(plug), all(socket)],

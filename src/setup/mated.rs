@@ -1,11 +1,11 @@
 //! Creation of a task from the meshes of a plug and its socket, by their mated pose.
 
 use super::bodies::{PairRequest, Parts};
-use crate::context::{Context, not_stopped};
+use super::poses::{MatedPose, along_of, depth, jaws_of, mate};
+use crate::context::Context;
 use crate::failure::Failure;
-use clap::ValueEnum;
 use connector::body::{extent, width};
-use connector::mating::{Mate, MatingResult, assembled, mates};
+use connector::mating::Mate;
 use connector::mesh::axes::{Along, Jaws, Unit, value};
 use connector::mesh::mated::{GAP, HANDLE, Interference, Pair, PairTask, TOLERANCE, task};
 use connector::mesh::{self, Files, SIZES, Surface, Triangle, reduced};
@@ -27,6 +27,8 @@ pub struct MatedTask {
     pub made: PairTask,
     /// Unit of the files.
     pub unit: Unit,
+    /// Mated poses that were found, of which the requested one is taken.
+    pub poses: Vec<MatedPose>,
     /// Direction of insertion in the file of the socket.
     pub along: Along,
     /// Axis of the socket's file along which the jaws close.
@@ -72,7 +74,7 @@ pub fn mated(
     if request.assembly.is_none() {
         context.note("looking for the mated pose");
     }
-    let mate = mate(files, [&plug, &socket], request, context, &mut findings)?;
+    let (mate, poses) = mate(files, [&plug, &socket], request, context, &mut findings)?;
     let out = mate.out.into_inner();
     let across = mate.across.map(|way| way.into_inner());
     let chosen = |way: &&Vector3<f64>| request.jaws.is_none_or(|jaws| jaws == jaws_of(way));
@@ -83,7 +85,8 @@ pub fn mated(
             format!("--jaws: the plug goes in along {}; give {a} or {b}", value(along_of(&-out)));
         return Err(Failure::usage(problem));
     }
-    let depth = request.depth_mm.map_or(mate.engaged_m, |depth_mm| depth_mm * MM);
+    let long = width(extent(plug.iter().flatten().map(|p| mate.pose * p), out.iamax()));
+    let depth = depth(request, &mate, long)?;
     let above = out * (mate.engaged_m - depth);
     let moved = |of: &[Triangle]| -> Vec<Triangle> {
         of.iter().map(|t| t.map(|p| mate.pose * p + above)).collect()
@@ -101,19 +104,24 @@ pub fn mated(
     // Height in x, width between the jaws, length.
     let handle = request.body.map(|size| [size.height, size.width, size.length]);
     let made = task(&pair, &request.name(), like, handle);
-    check_drawing(files, &made, &request.out().with_extension("place.svg"))?;
-    let long = width(extent(raised.iter().flatten(), out.iamax()));
+    let seat = (!mate.through && depth > mate.engaged_m + TOLERANCE).then_some(mate.engaged_m);
+    check_drawing(files, &made, seat, &request.out().with_extension("place.svg"))?;
     findings.extend(described(&mate, [long, depth], &made, handle));
     findings.extend(parts.finding);
     let (along, jaws) = (along_of(&-out), jaws_of(&made.jaws));
-    Ok(MatedTask { made, unit, along, jaws, inward: [plug_inward, socket_inward], findings })
+    Ok(MatedTask { made, unit, poses, along, jaws, inward: [plug_inward, socket_inward], findings })
 }
 
-/// Checks that the convex parts match the drawing.
+/// Checks that the convex parts match the drawing; `seat` is the depth at which the plug stops, m, if it is to go deeper.
 ///
 /// # Errors
 /// If they do not, with a picture of the largest deviation in the file `closeup`.
-fn check_drawing(files: Files, made: &PairTask, closeup: &Path) -> Result<(), Failure> {
+fn check_drawing(
+    files: Files,
+    made: &PairTask,
+    seat: Option<f64>,
+    closeup: &Path,
+) -> Result<(), Failure> {
     let at = |place: Point3<f64>| {
         let [x, y, z] = [place.x, place.y, place.z].map(|v| v / MM);
         format!("at [{x:.2}, {y:.2}, {z:.2}] mm of the task")
@@ -144,12 +152,17 @@ fn check_drawing(files: Files, made: &PairTask, closeup: &Path) -> Result<(), Fa
     };
     write_file(closeup, made.closeup.as_deref().unwrap_or_default())?;
     let deepest = made.interference.iter().map(|of| of.depth / MM).fold(0.0, f64::max);
-    let cause = match made.deviation.is_none() && deepest > 0.0 {
-        true => format!(
+    let cause = match (seat, made.deviation.is_none() && deepest > 0.0) {
+        (Some(seat), _) => {
+            format!("the plug stops {:.2} mm deep: give at most that as --depth-mm", seat / MM)
+        }
+        (None, true) => format!(
             "plug and socket overlap by up to {deepest:.2} mm in the pose that was found: if it is not the real one, give \
              an assembly of both in the mated pose"
         ),
-        false => "look there for faces that cross one another or are turned inside out".to_owned(),
+        (None, false) => {
+            "look there for faces that cross one another or are turned inside out".to_owned()
+        }
     };
     let problem =
         format!("{problem}: more than the {allowed} mm allowed; {cause} ({})", closeup.display());
@@ -233,42 +246,6 @@ fn described(
     findings
 }
 
-/// Returns the mate in the given direction, or the best one.
-fn mate(
-    files: Files,
-    [plug, socket]: [&[Triangle]; 2],
-    request: &PairRequest,
-    context: &Context<'_>,
-    findings: &mut Vec<(&'static str, String)>,
-) -> Result<Mate, Failure> {
-    let found = match request.assembly.is_some() {
-        true => assembled(plug, socket).map(|mate| MatingResult { mates: vec![mate], copies: 1 }),
-        false => mates(plug, socket, context.stop),
-    };
-    not_stopped(context.stop)?;
-    let nowhere = |why: String| Failure::in_file(files.join(", "), why);
-    let MatingResult { mates: mut all, copies } =
-        found.map_err(|error| nowhere(error.to_string()))?;
-    if copies > 1 {
-        findings.push(("symmetry", format!("the first of {copies} equal poses is taken")));
-    }
-    if let Some(along) = request.insert_along {
-        all.retain(|mate| along_of(&-mate.out.into_inner()) == along);
-    }
-    if let [_, _, ..] = all[..] {
-        let others = all.iter().map(|mate| {
-            let (along, depth) = (value(along_of(&-mate.out.into_inner())), mate.engaged_m / MM);
-            format!("along {along}, {depth:.2} mm deep")
-        });
-        let list = others.collect::<Vec<_>>().join("; ");
-        findings.push(("poses", format!("the first of these is taken: {list}")));
-    }
-    all.into_iter().next().ok_or_else(|| {
-        let along = request.insert_along.map(value).unwrap_or_default();
-        nowhere(format!("the plug does not go in along {along}"))
-    })
-}
-
 /// Returns the unit in which both have the size of a connector, and the reason; millimetres if several fit.
 pub fn unit(
     files: Files,
@@ -324,13 +301,4 @@ fn oriented(
         triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
     }
     (triangles, inward)
-}
-
-fn jaws_of(way: &Vector3<f64>) -> Jaws {
-    [Jaws::X, Jaws::Y, Jaws::Z][way.iamax()]
-}
-
-fn along_of(way: &Vector3<f64>) -> Along {
-    let axis = way.iamax();
-    Along::value_variants()[2 * axis + usize::from(way[axis] < 0.0)]
 }

@@ -9,6 +9,7 @@ pub mod film;
 pub mod finger;
 pub mod mated;
 pub mod measured;
+pub mod poses;
 pub mod printed;
 pub mod repeat;
 pub mod request;

@@ -218,6 +218,15 @@ impl TaskCheck {
         text
     }
 
+    /// Returns the text for a new task, with the next command if the nominal start inserts.
+    pub fn text_of_new(&self) -> String {
+        let next = match self.failure() {
+            None => format!("next          optimize task tune {}\n", self.source.file),
+            Some(_) => String::new(),
+        };
+        self.text() + &next
+    }
+
     /// Returns the error if there are problems or the nominal start does not insert, with the number of problems.
     pub fn failure(&self) -> Option<Failure> {
         let file = &self.source.file;

@@ -12,7 +12,7 @@ use crate::setup::task::{TaskCheck, TaskFile, read_task};
 use crate::setup::tune::{brief, chosen, tune_new};
 use connector::body::width;
 use connector::mesh::axes::value;
-use connector::mesh::mated::PairTask;
+use connector::mesh::mated::{PairTask, check_handle};
 use connector::tune::Tuned;
 use connector::write::{self, Notes};
 use input::shipped::Source;
@@ -59,6 +59,8 @@ impl command::Request for Request {
         let stop = context.stop;
         let out = &self.pair.out();
         within("--depth-mm", self.pair.depth_mm, &(0.4..=300.0))?;
+        let handle = self.pair.body.map_or(Ok(()), |size| check_handle(&size));
+        handle.map_err(|problem| Failure::usage(format!("--body: {problem}")))?;
         check_is_new(out)?;
         let busy = context.busy("making the task from the shapes");
         let mut mated = self.mated_task(context)?;
@@ -159,6 +161,7 @@ fn json(mated: &MatedTask, tuned: Option<&Tuned>, checked: &TaskCheck) -> Value 
         "unit": value(mated.unit),
         "insert_along": value(mated.along),
         "jaws": value(mated.jaws),
+        "poses": mated.poses,
         "found": found.collect::<Vec<_>>(),
         "clearance_mm": clearance_x_mm.min(clearance_y_mm),
         "clearance_x_mm": clearance_x_mm,
@@ -204,6 +207,6 @@ fn text(
         }
     }
     text.extend(tuned.map(|tuned| brief("strategy", tuned)));
-    text += &format!("{}next          optimize task tune {out}\n", checked.text());
+    text += &checked.text_of_new();
     wrapped(&text)
 }

@@ -101,11 +101,7 @@ impl command::Request for Request {
         let checked = TaskCheck::of(written.source, DEFAULT_ROBOT, self.engine, context.stop)?;
         let tuned = tuned.as_ref();
         let strategy = tuned.map_or(String::new(), |tuned| brief("strategy", tuned));
-        let text = format!(
-            "written       {file}\n{strategy}{}next          optimize task tune {file} --svg {}.svg\n",
-            checked.text(),
-            self.name
-        );
+        let text = format!("written       {file}\n{strategy}{}", checked.text_of_new());
         let value = json!({"out": file, "tuned": chosen(tuned), "check": checked.json()});
         let failure = checked.failure_of_new(tuned);
         Ok(Output { failure, ..Output::new(wrapped(&text), value) })

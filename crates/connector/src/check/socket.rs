@@ -17,6 +17,8 @@ const POSITIONS: i32 = 41;
 const REACH: f64 = 5.0 * MM;
 /// Step of this search, m.
 const STEP: f64 = 0.0025 * MM;
+/// Step of the depth at which the wall below a chamfer is searched for, m.
+const DEPTH_STEP: f64 = 0.25 * MM;
 /// Compression of the contacts, by which the success depth may exceed the depth of the seat, m.
 const COMPRESSION: f64 = 0.02 * MM;
 
@@ -35,26 +37,34 @@ pub(super) fn walls(case: &TaskBodies) -> Vec<Problem> {
 }
 
 /// Checks one side of the opening: the socket must be solid just outside the middle of the side, and the wall must
-/// begin at the stated edge somewhere along the side. The correct value is measured at the middle.
+/// begin at the stated edge somewhere along the side, just below the top or below a chamfer of at most 45 degrees. The
+/// correct value is measured at the middle.
 fn side(case: &TaskBodies, axis: usize, end: usize) -> Option<Problem> {
     let opening = case.task.opening;
     let stated = opening[axis][end];
     let outward = [-1.0, 1.0][end];
     let other = 1 - axis;
-    let part_at = |at: f64, share: f64| {
-        let mut point = Point3::new(0.0, 0.0, -BELOW);
+    let part_at = |at: f64, share: f64, lower: f64| {
+        let mut point = Point3::new(0.0, 0.0, -BELOW - lower);
         let [from, to] = opening[other];
         (point[axis], point[other]) = (at, from + share * (to - from));
         case.socket.part_at(&point)
     };
-    let begins = |i: i32| {
-        let share = f64::from(2 * i + 1) / f64::from(2 * POSITIONS);
-        let solid = |beyond: f64| part_at(stated + outward * beyond, share).is_some();
-        solid(TOLERANCE) && !solid(-TOLERANCE)
-    };
-    let part = |at: f64| part_at(at, 0.5);
+    let part = |at: f64| part_at(at, 0.5, 0.0);
     let solid = |beyond: f64| part(stated + outward * beyond).is_some();
-    if solid(TOLERANCE) && (0..POSITIONS).any(begins) {
+    let begins = |lower: f64| {
+        let solid_at = |beyond: f64, share: f64, lower: f64| {
+            part_at(stated + outward * beyond, share, lower).is_some()
+        };
+        let edge = |i: i32| {
+            let share = f64::from(2 * i + 1) / f64::from(2 * POSITIONS);
+            let free = [0.0, lower].iter().all(|lower| !solid_at(-TOLERANCE, share, *lower));
+            free && solid_at(TOLERANCE, share, lower)
+        };
+        solid(TOLERANCE + lower) && solid_at(TOLERANCE, 0.5, lower) && (0..POSITIONS).any(edge)
+    };
+    let mut depths = (0..).map(|i| f64::from(i) * DEPTH_STEP).take_while(|lower| *lower < REACH);
+    if depths.any(begins) {
         return None;
     }
     let name = ["x", "y"][axis];

@@ -172,9 +172,11 @@ pub fn pick(
     let of = if names.iter().all(named) { bodies.to_vec() } else { shells(bodies) };
     let mut picked = [Vec::new(), Vec::new()];
     if let Some(name) = names.iter().find(|name| of.iter().all(|body| body.name != **name)) {
-        let known: Vec<_> = bodies.iter().map(|body| format!("`{}`", body.name)).collect();
-        let (known, last) = (known.join(", "), of.len());
-        let problem = format!("has no body `{name}`; available: {known}, and shells 1 to {last}");
+        let names = bodies.iter().map(|body| &body.name).filter(|name| !name.is_empty());
+        let known: String = names.map(|name| format!("`{name}`, ")).collect();
+        let shells =
+            if of.len() > 1 { format!("shells 1 to {}", of.len()) } else { "shell 1".into() };
+        let problem = format!("has no body `{name}`; available: {known}{shells}");
         return Err(Place::file(file).fault(problem));
     }
     for body in of {

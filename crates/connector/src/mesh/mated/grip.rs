@@ -2,7 +2,7 @@
 
 use crate::body::{extent, width};
 use crate::check::FACES_MM;
-use crate::draft::block;
+use crate::draft::{Size, block};
 use crate::hold::{PAD_X, SEAM, pad_z};
 use crate::mesh::Triangle;
 use input::units::MM;
@@ -166,6 +166,24 @@ fn grasp_at(
     let part = block("grip", [x, faces, [held[0], shoulder]]);
     let touched = width(held) * width(common(x, PAD_X));
     Ok((touched, Grasp { shoulder, faces, part, area: area(low, high, free) }))
+}
+
+/// Checks that the pads can hold a handle of a size.
+///
+/// # Errors
+/// If they cannot: its size, and what they need.
+pub fn check_handle(size: &Size) -> Result<(), String> {
+    let Size { width, height, length } = *size;
+    let [near, far] = FACES_MM;
+    if (near * MM..=far * MM).contains(&width) && height >= LEAST_WIDTH && length >= LEAST_HEIGHT {
+        return Ok(());
+    }
+    let [wide, high, long] = [width, height, length].map(|side| side / MM);
+    let [least_high, least_long] = [LEAST_WIDTH, LEAST_HEIGHT].map(|side| side / MM);
+    Err(format!(
+        "is {wide:.2} x {high:.2} x {long:.2} mm, which the pads cannot hold; they need {near} to {far} mm between the \
+         jaws, a height of at least {least_high} mm and a length of at least {least_long} mm"
+    ))
 }
 
 /// Returns the grasp of a handle of a size (x, y, z), m, which is added to the top of the plug and stays above `free`,

@@ -14,7 +14,7 @@ use super::surface::snap;
 use crate::body::{clipped, extent, span, width};
 use crate::{draft, plan};
 use contact::scene::Pose;
-pub use grip::{Grasp, Rejected};
+pub use grip::{Grasp, Rejected, check_handle};
 use input::units::MM;
 use insertion::task::{Part, Solid, Task, geometry};
 use nalgebra::{Matrix3, Point3, Vector3};

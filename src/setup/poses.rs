@@ -1,0 +1,112 @@
+//! Mated pose of a plug in its socket: the poses that were found, and the requested one.
+
+use super::bodies::PairRequest;
+use crate::context::{Context, not_stopped};
+use crate::failure::{Failure, within};
+use clap::ValueEnum;
+use connector::mating::{Mate, MatingResult, assembled, mates};
+use connector::mesh::axes::{Along, Jaws, value};
+use connector::mesh::{Files, Triangle};
+use input::units::{DEG, MM};
+use nalgebra::Vector3;
+use serde::Serialize;
+
+/// Pose in which the plug can be mated.
+#[derive(Debug, Clone, Serialize)]
+pub struct MatedPose {
+    /// Direction of insertion in the file of the socket.
+    insert_along: String,
+    /// Depth over which plug and socket engage.
+    depth_mm: f64,
+    /// Angle between this pose and the first.
+    turn_deg: f64,
+    /// Place of the origin of the plug's file, in the file of the socket.
+    origin_mm: [f64; 3],
+}
+
+impl MatedPose {
+    fn new(mate: &Mate, first: &Mate) -> Self {
+        let origin = mate.pose.translation.vector / MM;
+        MatedPose {
+            insert_along: value(along_of(&-mate.out.into_inner())),
+            depth_mm: mate.engaged_m / MM,
+            turn_deg: mate.pose.rotation.angle_to(&first.pose.rotation) / DEG,
+            origin_mm: [origin.x, origin.y, origin.z],
+        }
+    }
+
+    fn text(&self) -> String {
+        let MatedPose { insert_along, depth_mm, turn_deg, origin_mm: [x, y, z] } = self;
+        format!(
+            "along {insert_along}, {depth_mm:.2} mm deep, turned by {turn_deg:.0}°, the plug's origin at \
+             [{x:.2}, {y:.2}, {z:.2}] mm"
+        )
+    }
+}
+
+/// Returns the requested mate and all that were found in the given direction, the best first.
+///
+/// # Errors
+/// If there is none, or fewer than requested.
+pub fn mate(
+    files: Files,
+    [plug, socket]: [&[Triangle]; 2],
+    request: &PairRequest,
+    context: &Context<'_>,
+    findings: &mut Vec<(&'static str, String)>,
+) -> Result<(Mate, Vec<MatedPose>), Failure> {
+    let found = match request.assembly.is_some() {
+        true => assembled(plug, socket).map(|mate| MatingResult { mates: vec![mate], copies: 1 }),
+        false => mates(plug, socket, context.stop),
+    };
+    not_stopped(context.stop)?;
+    let nowhere = |why: String| Failure::in_file(files.join(", "), why);
+    let MatingResult { mates: mut all, copies } =
+        found.map_err(|error| nowhere(error.to_string()))?;
+    if copies > 1 {
+        findings.push(("symmetry", format!("the first of {copies} equal poses is taken")));
+    }
+    if let Some(along) = request.insert_along {
+        all.retain(|mate| along_of(&-mate.out.into_inner()) == along);
+    }
+    let Some(first) = all.first() else {
+        let along = request.insert_along.map(value).unwrap_or_default();
+        return Err(nowhere(format!("the plug does not go in along {along}")));
+    };
+    let poses: Vec<_> = all.iter().map(|mate| MatedPose::new(mate, first)).collect();
+    within("--pose", request.pose, &(1..=poses.len()))?;
+    if poses.len() > 1 {
+        let list = (1..).zip(&poses).map(|(i, pose)| format!("{i} {}", pose.text()));
+        let list = list.collect::<Vec<_>>().join("; ");
+        findings.push(("poses", format!("{} is taken (--pose): {list}", request.pose)));
+    }
+    Ok((all.swap_remove(request.pose - 1), poses))
+}
+
+/// Returns the depth to be reached, m: that of the request, or that over which plug and socket engage. `long` is the
+/// length of the plug along the axis, m.
+///
+/// # Errors
+/// If the requested depth is larger than plug and socket allow.
+pub fn depth(request: &PairRequest, mate: &Mate, long: f64) -> Result<f64, Failure> {
+    let Some(depth_mm) = request.depth_mm else { return Ok(mate.engaged_m) };
+    // A plug that goes along a post engages over more than its length.
+    let most_mm = (long.max(mate.engaged_m) / MM * 100.0).round() / 100.0;
+    if depth_mm <= most_mm {
+        return Ok(depth_mm * MM);
+    }
+    let [long_mm, engaged_mm] = [long, mate.engaged_m].map(|length| length / MM);
+    Err(Failure::usage(format!(
+        "--depth-mm {depth_mm}: the plug is {long_mm:.2} mm long and engages over {engaged_mm:.2} mm; give at most \
+         {most_mm} mm"
+    )))
+}
+
+pub(super) fn jaws_of(way: &Vector3<f64>) -> Jaws {
+    [Jaws::X, Jaws::Y, Jaws::Z][way.iamax()]
+}
+
+pub(super) fn along_of(way: &Vector3<f64>) -> Along {
+    let axis = way.iamax();
+    Along::value_variants()[2 * axis + usize::from(way[axis] < 0.0)]
+}

@@ -102,14 +102,14 @@ impl Request {
         let chosen = self.finger.choose(&setup)?;
         let measured = self.measured(&chosen)?;
         let clock = Instant::now();
-        let evaluation = setup.evaluator.simulate(&chosen.specimen, self.search(), &plan, stop);
+        let evaluation = setup.evaluator.simulate(&chosen.scenario, self.search(), &plan, stop);
         let evaluation = evaluation.map_err(Failure::input)?;
         not_stopped(stop)?;
         let wall_s = clock.elapsed().as_secs_f64();
         let window = &evaluation.window;
         let bands = |repeat: RepeatRequest| {
-            let (specimen, taught) = (&chosen.specimen, evaluation.taught);
-            repeat.run(&setup, specimen, taught, stop, |repeats| repeats.bands(window))
+            let (scenario, taught) = (&chosen.scenario, evaluation.taught);
+            repeat.run(&setup, scenario, taught, stop, |repeats| repeats.bands(window))
         };
         let repeat = self.repeat.filter(|_| window.nominal == Outcome::Inserted);
         let bands = repeat.map(bands).transpose()?;
@@ -131,7 +131,7 @@ impl Request {
     /// Returns the lines of the measurement file that have a range of the finger on its task.
     fn measured(&self, chosen: &ChosenFinger) -> Result<Vec<Experiment>, Failure> {
         let Some(name) = &self.measurements else { return Ok(Vec::new()) };
-        let task = &chosen.specimen.task.name;
+        let task = &chosen.scenario.task.name;
         let mut lines = measured::lines(&measured::file(name)?, &[task])?;
         lines.retain(|line| line.task == *task && line.design == chosen.design);
         lines.retain(|line| line.extent().is_some());
@@ -155,8 +155,8 @@ impl Request {
         }
         let Some(evaluator) = setup.by_ribs() else { return Ok(None) };
         let chosen = self.finger.choose_with(setup, &evaluator);
-        let measured = chosen.and_then(|ChosenFinger { specimen, .. }| {
-            let found = evaluator.simulate_or_teach(&specimen, self.search(), &Plan::WINDOW, stop);
+        let measured = chosen.and_then(|ChosenFinger { scenario, .. }| {
+            let found = evaluator.simulate_or_teach(&scenario, self.search(), &Plan::WINDOW, stop);
             found.map_err(Failure::input)
         });
         not_stopped(stop)?;
@@ -170,7 +170,7 @@ impl Request {
 /// Returns the limit of the contact force, N: the smaller of the connector's limit and the robot's stop force.
 pub(crate) fn limit_n(setup: &Setup, chosen: &ChosenFinger) -> f64 {
     let stop_n = setup.evaluator.robot.stop_force;
-    chosen.specimen.task.limits.force.map_or(stop_n, |force| force.min(stop_n))
+    chosen.scenario.task.limits.force.map_or(stop_n, |force| force.min(stop_n))
 }
 
 /// Serializes the evaluation by the ribs, or the reason why there is none.
@@ -233,7 +233,7 @@ impl Evaluated {
             force += &format!(", above the limit of connector or robot, {:.0} N", self.limit_n);
         }
         rest.push(("peak force".to_owned(), force));
-        let mating = words::mating_force(chosen.specimen.task.largest_mating_force());
+        let mating = words::mating_force(chosen.scenario.task.largest_mating_force());
         rest.push(("mating force".to_owned(), mating));
         rest.extend(lines::taught(evaluation.taught.map(grid_mm)));
         rest.extend(lines::drawn(evaluation));
@@ -241,7 +241,7 @@ impl Evaluated {
         rest.extend(self.disagreement().map(|remark| (String::new(), remark.to_owned())));
         let text = format!(
             "task          {}\n{}{}{}time          {:.1} s\n",
-            chosen.specimen.task.name,
+            chosen.scenario.task.name,
             chosen.text(),
             layout::lines(rest),
             self.bands.as_ref().map(bands_text).unwrap_or_default(),

@@ -41,7 +41,7 @@ impl command::Request for Request {
         context.begin(cost::LEVERS);
         let setup = self.setup.setup()?;
         let chosen = self.finger.choose(&setup)?;
-        let given = chosen.given.then_some(chosen.specimen.stiffness);
+        let given = chosen.given.then_some(chosen.scenario.stiffness);
         let finger = (&chosen.design, given);
         let levers = levers(&setup, finger, None, context)?;
         let (svg, text) = (output::svg(&levers)?, layout::wrapped(&output::text(&levers)));

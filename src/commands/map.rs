@@ -11,7 +11,7 @@ use crate::setup::request::SetupRequest;
 use analysis::map::{Axes, CaptureMap, Plane};
 use clap::ValueEnum;
 use insertion::evaluation::OffsetStep;
-use insertion::evaluation::evaluator::Specimen;
+use insertion::evaluation::evaluator::Scenario;
 use insertion::space::Design;
 use insertion::trial::Grasp;
 use parameters::plan::grid::MAX_TRIALS;
@@ -62,8 +62,8 @@ impl command::Request for Request {
         context.begin(cost::MAP);
         let setup = self.setup.setup()?;
         let chosen = self.finger.choose(&setup)?;
-        let taught = setup.evaluator.taught(&chosen.specimen, stop).map_err(Failure::input)?;
-        let finger = (&chosen.specimen, &chosen.design);
+        let taught = setup.evaluator.taught(&chosen.scenario, stop).map_err(Failure::input)?;
+        let finger = (&chosen.scenario, &chosen.design);
         let map = map_of(&setup, finger, taught, self.axes, context)?;
         let svg = report::map::svg(&map)?;
         let value = Mapped { chosen, map };
@@ -75,19 +75,19 @@ impl command::Request for Request {
 /// Number of trials that are one part of the progress: a single one can be as short as a result from the cache.
 const TOGETHER: usize = 10;
 
-/// Traces the capture map of `specimen`, which has the given design. It is centred on the taught start, if any.
+/// Traces the capture map of `scenario`, which has the given design. It is centred on the taught start, if any.
 ///
 /// # Errors
 /// If task, robot and finger cannot be simulated; if it is cancelled meanwhile.
 pub(crate) fn map_of(
     setup: &Setup,
-    (specimen, design): (&Specimen, &Design),
+    (scenario, design): (&Scenario, &Design),
     taught: Option<OffsetStep>,
     axes: Axes,
     context: &Context<'_>,
 ) -> Result<CaptureMap, Failure> {
-    let rig = setup.evaluator.rig(specimen, taught, 1.0).map_err(Failure::input)?;
-    let grasp = Grasp { stop: context.stop, ..Grasp::of(&specimen.finger) };
+    let rig = setup.evaluator.rig(scenario, taught, 1.0).map_err(Failure::input)?;
+    let grasp = Grasp { stop: context.stop, ..Grasp::of(&scenario.finger) };
     let plane = Plane::new(&*rig, grasp, axes);
     let axes = axes.to_possible_value();
     let what = axes.map_or(String::new(), |axes| format!("trials of the map {}", axes.get_name()));
@@ -102,7 +102,7 @@ pub(crate) fn map_of(
             part([done, MAX_TRIALS], TOGETHER);
         }
     };
-    let map = CaptureMap::trace(&specimen.task.name, design.clone(), &plane, &done);
+    let map = CaptureMap::trace(&scenario.task.name, design.clone(), &plane, &done);
     if map.trials < MAX_TRIALS {
         part([map.trials; 2], MAX_TRIALS - map.trials / TOGETHER * TOGETHER);
     }

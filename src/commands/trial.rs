@@ -114,15 +114,15 @@ impl Request {
         let (stop, offset_mm) = (context.stop, self.offset_mm);
         let setup = self.setup.setup()?;
         let chosen = self.finger.choose(&setup)?;
-        let specimen = &chosen.specimen;
+        let scenario = &chosen.scenario;
         let offset = offset_mm * MM;
-        let taught = setup.evaluator.taught(specimen, stop).map_err(Failure::input)?;
-        let rig = setup.evaluator.rig(specimen, taught, 1.0).map_err(Failure::input)?;
-        let (filmed, page) = self.film.record(&*rig, specimen, offset_mm, stop)?;
-        let grasp = Grasp { stop, ..Grasp::of(&specimen.finger) };
+        let taught = setup.evaluator.taught(scenario, stop).map_err(Failure::input)?;
+        let rig = setup.evaluator.rig(scenario, taught, 1.0).map_err(Failure::input)?;
+        let (filmed, page) = self.film.record(&*rig, scenario, offset_mm, stop)?;
+        let grasp = Grasp { stop, ..Grasp::of(&scenario.finger) };
         let (trial, samples) = match (self.every_s, filmed) {
             _ if self.probe => {
-                let rig = setup.evaluator.rig(specimen, None, 1.0).map_err(Failure::input)?;
+                let rig = setup.evaluator.rig(scenario, None, 1.0).map_err(Failure::input)?;
                 let probed = rig.follow(grasp, Command::Probe(Probe::DEFAULT), STEP_S);
                 probed.into_iter().next().ok_or_else(undriven)?
             }
@@ -136,12 +136,12 @@ impl Request {
             write_file(file, &log.csv())?;
         }
         if let Some(file) = &self.svg {
-            let label = format!("{}, start shifted by {offset_mm:+.1} mm", specimen.task.name);
-            write_file(file, &picture::svg(&specimen.task, &specimen.finger.pad, &trial, &label))?;
+            let label = format!("{}, start shifted by {offset_mm:+.1} mm", scenario.task.name);
+            write_file(file, &picture::svg(&scenario.task, &scenario.finger.pad, &trial, &label))?;
         }
         drop(rig);
         let outcomes = |repeat: RepeatRequest| {
-            repeat.run(&setup, specimen, taught, stop, |repeats| repeats.outcomes(offset))
+            repeat.run(&setup, scenario, taught, stop, |repeats| repeats.outcomes(offset))
         };
         let repeats = self.repeat.map(outcomes).transpose()?.map(|outcomes| {
             let mut counts = BTreeMap::new();

@@ -34,10 +34,10 @@ impl Insertion {
         stop: &AtomicBool,
     ) -> Result<Self, Failure> {
         let setup = setup.setup()?;
-        let specimen = finger.choose(&setup)?.specimen;
-        let taught = setup.evaluator.taught(&specimen, stop).map_err(Failure::input)?;
-        let rig = setup.evaluator.rig(&specimen, None, 1.0).map_err(Failure::input)?;
-        let driven = rig.driven(&specimen.finger).ok_or_else(undriven)?;
+        let scenario = finger.choose(&setup)?.scenario;
+        let taught = setup.evaluator.taught(&scenario, stop).map_err(Failure::input)?;
+        let rig = setup.evaluator.rig(&scenario, None, 1.0).map_err(Failure::input)?;
+        let driven = rig.driven(&scenario.finger).ok_or_else(undriven)?;
         not_stopped(stop)?;
         Ok(Insertion { driven, taught: taught.map_or(0.0, tolerance::offset) })
     }

@@ -2,7 +2,7 @@
 
 use crate::context::not_stopped;
 use crate::failure::Failure;
-use insertion::evaluation::evaluator::Specimen;
+use insertion::evaluation::evaluator::Scenario;
 use insertion::trial::{Grasp, Recording, Rig};
 use report::replay::{self, Film};
 use std::path::{Path, PathBuf};
@@ -29,22 +29,22 @@ impl FilmRequest {
     pub(crate) fn record(
         &self,
         rig: &dyn Rig,
-        specimen: &Specimen,
+        scenario: &Scenario,
         offset_mm: f64,
         stop: &AtomicBool,
     ) -> Result<(Option<Recording>, Option<String>), Failure> {
         if self.record.is_none() && self.plot.is_none() && !self.page {
             return Ok((None, None));
         }
-        let grasp = Grasp { stop, ..Grasp::of(&specimen.finger) };
+        let grasp = Grasp { stop, ..Grasp::of(&scenario.finger) };
         let recording = rig.record(grasp, offset_mm * input::units::MM).ok_or_else(|| {
             Failure::usage("--record and --plot need an engine that simulates: --engine direct")
         })?;
         not_stopped(stop)?;
         let label = &start_label(offset_mm);
-        let (task, pad) = (&specimen.task, &specimen.finger.pad);
+        let (task, pad) = (&scenario.task, &scenario.finger.pad);
         let film = Film { label, task, pad, recording: &recording };
-        let page = || replay::page(&format!("{}, {label}", specimen.task.name), &[film]);
+        let page = || replay::page(&format!("{}, {label}", scenario.task.name), &[film]);
         if let Some(file) = &self.record {
             let content = match &*extension(file) {
                 "csv" => replay::csv(&recording),

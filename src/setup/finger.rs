@@ -6,7 +6,7 @@ use crate::layout;
 use input::shown;
 use input::units::{MM, N_PER_MM};
 use insertion::evaluation::cell::Priors;
-use insertion::evaluation::evaluator::{Evaluator, Specimen};
+use insertion::evaluation::evaluator::{Evaluator, Scenario};
 use insertion::finger::model::{CentreSource, FingerModelKind, RCC_KEY};
 use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design};
 use insertion::surrogate::Prediction;
@@ -83,7 +83,7 @@ pub struct FingerRequest {
 /// Finger on a task, with the source of its stiffness.
 pub struct ChosenFinger {
     /// Task, finger and robot, ready for simulation.
-    pub specimen: Specimen,
+    pub scenario: Scenario,
     /// Name of the robot.
     pub robot: String,
     /// Cell (robot, friction and other parameters of an installation), if one is given.
@@ -140,9 +140,9 @@ impl FingerRequest {
                 evaluator.predict(&design).map_err(Failure::input)?
             }
         };
-        let specimen = evaluator.specimen(template, &design, stiffness).map_err(Failure::input)?;
+        let scenario = evaluator.scenario(template, &design, stiffness).map_err(Failure::input)?;
         Ok(ChosenFinger {
-            specimen,
+            scenario,
             robot: evaluator.robot.name.clone(),
             cell: evaluator.cell.clone(),
             finger_model: evaluator.fingers.kind(),
@@ -193,7 +193,7 @@ fn check(setup: &Setup, flag: &str, key: &str, value: f64) -> Result<(), Failure
 
 impl Serialize for ChosenFinger {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let Specimen { task, finger, stiffness, .. } = &self.specimen;
+        let Scenario { task, finger, stiffness, .. } = &self.scenario;
         let mut subject = json!({
             "task": task.name,
             "robot": self.robot,
@@ -203,7 +203,7 @@ impl Serialize for ChosenFinger {
             "set": self.set,
             "finger_model": self.finger_model.name(),
             "rcc_mm": finger.rcc / MM,
-            "rcc_from": match self.specimen.centre_source() {
+            "rcc_from": match self.scenario.centre_source() {
                 CentreSource::Model => "finger-model",
                 CentreSource::TaskFile => "task",
                 CentreSource::Design => "design",
@@ -222,7 +222,7 @@ impl Serialize for ChosenFinger {
 impl ChosenFinger {
     /// Returns design, stiffness and finger model as lines.
     pub fn text(&self) -> String {
-        let stiffness = &self.specimen.stiffness;
+        let stiffness = &self.scenario.stiffness;
         let stiffness = match self.given {
             false => layout::lines(lines::stiffness(stiffness)),
             true => format!(
@@ -236,19 +236,19 @@ impl ChosenFinger {
             true => String::new(),
             false => format!("design        {}\n", self.design.labelled()),
         };
-        let remark = self.cell.as_ref().and_then(|cell| cell.remark(&self.specimen.task.name));
+        let remark = self.cell.as_ref().and_then(|cell| cell.remark(&self.scenario.task.name));
         let remark = remark.map(|remark| format!("warning       {remark}\n"));
         format!("{design}{stiffness}{finger}{}", remark.unwrap_or_default())
     }
 
     /// Returns the values computed by the finger model as text; empty for the model of the paper.
     fn model_text(&self) -> String {
-        let Specimen { finger, .. } = &self.specimen;
+        let Scenario { finger, .. } = &self.scenario;
         if self.finger_model == FingerModelKind::Paper {
             return String::new();
         }
         let (below, ahead) = (finger.rcc / MM, finger.ahead / MM);
-        let given = match self.specimen.centre_source() {
+        let given = match self.scenario.centre_source() {
             CentreSource::Model => String::new(),
             CentreSource::TaskFile => ", given by the task file, not computed".to_owned(),
             CentreSource::Design => format!(", given by {RCC_KEY}, not computed"),

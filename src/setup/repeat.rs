@@ -4,7 +4,7 @@ use super::Setup;
 use crate::context::not_stopped;
 use crate::failure::Failure;
 use insertion::evaluation::OffsetStep;
-use insertion::evaluation::evaluator::Specimen;
+use insertion::evaluation::evaluator::Scenario;
 use insertion::evaluation::robustness::repeat::{Band, Bands, Repeats};
 use insertion::trial::Grasp;
 use serde::{Serialize, Serializer};
@@ -30,18 +30,18 @@ pub struct RepeatRequest {
 }
 
 impl RepeatRequest {
-    /// Calls `measure` with the varied repeats of a specimen from this taught start, and returns its result.
+    /// Calls `measure` with the varied repeats of a scenario from this taught start, and returns its result.
     pub(crate) fn run<T>(
         &self,
         setup: &Setup,
-        specimen: &Specimen,
+        scenario: &Scenario,
         taught: Option<OffsetStep>,
         stop: &AtomicBool,
         measure: impl Fn(&Repeats) -> T,
     ) -> Result<T, Failure> {
-        let rig = |factor| setup.evaluator.rig(specimen, taught, factor).map_err(Failure::input);
+        let rig = |factor| setup.evaluator.rig(scenario, taught, factor).map_err(Failure::input);
         let rigs = [rig(1.0)?, rig(0.5)?];
-        let grasp = Grasp { stop, ..Grasp::of(&specimen.finger) };
+        let grasp = Grasp { stop, ..Grasp::of(&scenario.finger) };
         let repeats = Repeats::new(rigs.each_ref().map(|rig| &**rig), grasp, self.seed, self.count);
         let measured = measure(&repeats);
         not_stopped(stop)?;

@@ -17,7 +17,7 @@ use ::report::answer::{Answer, RobotWindow};
 use analysis::levers::Levers;
 use analysis::map::Axes;
 use insertion::evaluation::Evaluation;
-use insertion::evaluation::evaluator::Specimen;
+use insertion::evaluation::evaluator::Scenario;
 use insertion::evaluation::robustness::Plan;
 use insertion::evaluation::tolerance::Search;
 use insertion::robot::Robot;
@@ -109,8 +109,8 @@ impl Ended {
         let setup = Setup::from_inputs(&record.inputs(dir)?, engine)?;
         let design = &subject.design;
         let stiffness = setup.evaluator.predict(design).map_err(Failure::input)?;
-        let specimen = setup.evaluator.specimen(setup.only_task()?, design, stiffness);
-        let specimen = &specimen.map_err(Failure::input)?;
+        let scenario = setup.evaluator.scenario(setup.only_task()?, design, stiffness);
+        let scenario = &scenario.map_err(Failure::input)?;
         self.run.pool()?.install(|| {
             if levers_missing {
                 let span = answer.spread_mm;
@@ -119,13 +119,13 @@ impl Ended {
                 found.levers = Some(levers);
             }
             if maps_missing {
-                let taught = setup.evaluator.taught(specimen, stop).map_err(Failure::input)?;
-                let map = |axes| map_of(&setup, (specimen, design), taught, axes, context);
+                let taught = setup.evaluator.taught(scenario, stop).map_err(Failure::input)?;
+                let map = |axes| map_of(&setup, (scenario, design), taught, axes, context);
                 found.maps = MAPPED.into_iter().map(map).collect::<Result<_, _>>()?;
                 subject.write(dir, MAPS, &found.maps)?;
             }
             if robots_missing {
-                found.robots = robots(&setup, answer, specimen, stop)?;
+                found.robots = robots(&setup, answer, scenario, stop)?;
                 subject.write(dir, ROBOTS, &found.robots)?;
             }
             Ok::<_, Failure>(())
@@ -140,10 +140,10 @@ impl Ended {
 fn robots(
     setup: &Setup,
     answer: &Answer,
-    specimen: &Specimen,
+    scenario: &Scenario,
     stop: &AtomicBool,
 ) -> Result<Vec<RobotWindow>, Failure> {
-    let start = [specimen.task.turn, specimen.task.strategy.tilt];
+    let start = [scenario.task.turn, scenario.task.strategy.tilt];
     let window_with = |robot: &Robot, measured: Evaluation| {
         let (stiffness_n_per_mm, _) = stiffness_and_lag(robot, start)?;
         Ok::<_, Failure>(RobotWindow { robot: robot.name.clone(), stiffness_n_per_mm, measured })
@@ -154,10 +154,10 @@ fn robots(
     let own = window_with(&setup.evaluator.robot, known)?;
     let compliant = own.stiffness_n_per_mm.is_some_and(|[_, y, _]| y < COMPLIANT_N_PER_MM);
     let other = robot(if compliant { "ur5e_position" } else { "servo" })?;
-    let specimen = &Specimen { robot: other, ..specimen.clone() };
+    let scenario = &Scenario { robot: other, ..scenario.clone() };
     let plan = &Plan::WINDOW;
-    let found = setup.evaluator.simulate_or_teach(specimen, Search::Walk, plan, stop);
+    let found = setup.evaluator.simulate_or_teach(scenario, Search::Walk, plan, stop);
     let found = found.map_err(Failure::input)?;
     not_stopped(stop)?;
-    Ok(vec![own, window_with(&specimen.robot, found)?])
+    Ok(vec![own, window_with(&scenario.robot, found)?])
 }

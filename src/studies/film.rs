@@ -76,18 +76,18 @@ fn pair(
     }
     let evaluator = &setup.evaluator;
     let stiffness = evaluator.predict(design).map_err(Failure::input)?;
-    let specimen = &evaluator.specimen(template, design, stiffness).map_err(Failure::input)?;
-    let rig = evaluator.rig(specimen, measured.taught, 1.0).map_err(Failure::input)?;
-    let grasp = Grasp { stop, ..Grasp::of(&specimen.finger) };
+    let scenario = &evaluator.scenario(template, design, stiffness).map_err(Failure::input)?;
+    let rig = evaluator.rig(scenario, measured.taught, 1.0).map_err(Failure::input)?;
+    let grasp = Grasp { stop, ..Grasp::of(&scenario.finger) };
     let record = |step| rig.record(grasp, offset(step));
     let (inside, outside) =
         pool.install(|| rayon::join(|| record(last), || record(last + outward)));
     let Some((inside, outside)) = inside.zip(outside) else { return Ok(None) };
     let labels = [last, last + outward].map(|step| start_label(grid_mm(step)));
-    let (task, pad) = (&specimen.task, &specimen.finger.pad);
+    let (task, pad) = (&scenario.task, &scenario.finger.pad);
     let film = |label, recording| Film { label, task, pad, recording };
     let films = [film(&*labels[0], &inside), film(&*labels[1], &outside)];
-    let title = format!("{}: the {end} end of the window", specimen.task.name);
+    let title = format!("{}: the {end} end of the window", scenario.task.name);
     let poster = picture::final_state(task, pad, &outside.trial);
     Ok(Some([replay::page(&title, &films), poster]))
 }

@@ -57,7 +57,7 @@ impl Sweep {
             let clock = Instant::now();
             let chosen = finger.choose(setup)?;
             let (evaluation, _) =
-                evaluator.evaluate_specimen(&chosen.specimen, plan).map_err(Failure::input)?;
+                evaluator.evaluate_scenario(&chosen.scenario, plan).map_err(Failure::input)?;
             let wall_s = clock.elapsed().as_secs_f64();
             let limit_n = limit_n(setup, &chosen);
             let (bands, computed, measured) = (None, None, Vec::new());

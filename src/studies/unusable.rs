@@ -25,26 +25,26 @@ pub(crate) fn check(
     let Some((task, nearest)) = record.unusable() else { return Ok(()) };
     let Some(template) = setup.evaluator.templates.get(task) else { return Ok(()) };
     let evaluator = &setup.evaluator;
-    let specimen =
-        evaluator.specimen(template, &nearest.design, nearest.stiffness).map_err(Failure::input)?;
+    let scenario =
+        evaluator.scenario(template, &nearest.design, nearest.stiffness).map_err(Failure::input)?;
     let taught = nearest.on(task).and_then(|found| found.taught);
-    let rig = evaluator.rig(&specimen, taught, 1.0).map_err(Failure::input)?;
-    let trial = rig.grasp(Grasp { stop, ..Grasp::of(&specimen.finger) }).trial(0.0);
+    let rig = evaluator.rig(&scenario, taught, 1.0).map_err(Failure::input)?;
+    let trial = rig.grasp(Grasp { stop, ..Grasp::of(&scenario.finger) }).trial(0.0);
     not_stopped(stop)?;
     let class = outcome(trial.outcome);
     let phase =
         trial.phases.last().map_or(String::new(), |phase| format!(" in phase {}", phase.name));
     let label = format!("evaluation {} at the nominal start: {class}{phase}", nearest.index);
     let file = dir.join(PICTURE);
-    write_own_file(&file, &picture::svg(&specimen.task, &specimen.finger.pad, &trial, &label))?;
-    let teach = match specimen.task.strategy.rule {
+    write_own_file(&file, &picture::svg(&scenario.task, &scenario.finger.pad, &trial, &label))?;
+    let teach = match scenario.task.strategy.rule {
         StartRule::Given => ". `--start taught` moves it to where the finger inserts",
         StartRule::Taught => "",
     };
     Err(Failure::running(format!(
         "no design of the study inserts at the nominal start of {}: evaluation {} ends with {class}{phase}, \
          at depth {:.2} mm and tilt {:.2} deg; {} shows it. {}{teach}",
-        specimen.task.name,
+        scenario.task.name,
         nearest.index,
         trial.depth_mm,
         trial.tilt_deg,

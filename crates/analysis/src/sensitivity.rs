@@ -32,7 +32,7 @@ pub fn inputs(space: &Space, errors: Option<&Errors>) -> Result<Vec<Parameter>, 
 /// result is invalid once `stop` is set.
 ///
 /// # Errors
-/// If the point's design, specimen or rig cannot be built.
+/// If the point's design, scenario or rig cannot be built.
 pub fn evaluate(
     inputs: &[Parameter],
     (evaluator, template): (&Evaluator, &Template),
@@ -44,10 +44,10 @@ pub fn evaluate(
         values.partition(|(input, _)| input.path.kind() == Kind::Error);
     let design =
         Design(numbers.iter().map(|(one, value)| (one.path.to_string(), *value)).collect());
-    let specimen = evaluator.apply(template, (&design, None), &[])?;
-    let rig = evaluator.rig(&specimen, evaluator.taught(&specimen, stop)?, 1.0)?;
+    let scenario = evaluator.apply(template, (&design, None), &[])?;
+    let rig = evaluator.rig(&scenario, evaluator.taught(&scenario, stop)?, 1.0)?;
     let draw = Draw::with(errors.iter().map(|(one, value)| (&*one.path, *value)));
-    let finger = draw.finger(&specimen.finger, &specimen.stiffness);
+    let finger = draw.finger(&scenario.finger, &scenario.stiffness);
     let grasp = Grasp { finger, conditions: draw.conditions, stop };
     Ok(tolerance::evaluate_grasp(&*rig, grasp, Search::Strides))
 }

@@ -2,7 +2,7 @@
 
 use input::units::MM;
 use insertion::evaluation::Evaluation;
-use insertion::evaluation::evaluator::{Evaluator, Specimen};
+use insertion::evaluation::evaluator::{Evaluator, Scenario};
 use insertion::evaluation::robustness::Plan;
 use insertion::evaluation::template::{DesignError, Template};
 use insertion::evaluation::tolerance::Search;
@@ -47,16 +47,16 @@ impl<'a> Simulation<'a> {
     pub fn window(&self, design: &Design, levels: &[f64]) -> Result<Evaluation, DesignError> {
         let values = self.parameters.iter().zip(levels).map(|(p, &level)| (*p, p.at(level)));
         let values: Vec<_> = values.collect();
-        let specimen = self.evaluator.apply(self.template, (design, None), &values)?;
+        let scenario = self.evaluator.apply(self.template, (design, None), &values)?;
         let inserts = |found: &Evaluation| found.window.nominal == Outcome::Inserted;
-        let own = self.simulate(&specimen)?;
+        let own = self.simulate(&scenario)?;
         if inserts(&own) {
             return Ok(own);
         }
         for shift in SHIFTS_MM {
-            let mut specimen = specimen.clone();
-            specimen.task.strategy.start[1] += shift * MM;
-            let evaluation = self.simulate(&specimen)?;
+            let mut scenario = scenario.clone();
+            scenario.task.strategy.start[1] += shift * MM;
+            let evaluation = self.simulate(&scenario)?;
             if inserts(&evaluation) {
                 return Ok(evaluation);
             }
@@ -64,14 +64,14 @@ impl<'a> Simulation<'a> {
         Ok(own)
     }
 
-    /// Simulates the window of a specimen, or returns the cached one.
-    fn simulate(&self, specimen: &Specimen) -> Result<Evaluation, DesignError> {
+    /// Simulates the window of a scenario, or returns the cached one.
+    fn simulate(&self, scenario: &Scenario) -> Result<Evaluation, DesignError> {
         let evaluator = self.evaluator;
-        let new = |dir: &PathBuf| Cache::new(dir, &specimen.robot, &evaluator.engine.record());
+        let new = |dir: &PathBuf| Cache::new(dir, &scenario.robot, &evaluator.engine.record());
         let cache = &self.cache.as_ref().map(new);
         let (search, plan, stop) = (Search::default(), &Plan::WINDOW, self.stop);
         let cached = CachedEvaluator { evaluator, search, plan, cache: cache.as_ref(), stop };
-        Ok(cached.evaluate_specimen(specimen, plan)?.0)
+        Ok(cached.evaluate_scenario(scenario, plan)?.0)
     }
 }
 
@@ -103,8 +103,8 @@ mod tests {
         let (template, design) = (&evaluator.templates[0], Design::infill(20.0, 10.0));
         let simulation = Simulation::new(&evaluator, template, [].iter(), None, &NEVER);
         let found = simulation.window(&design, &[]).unwrap();
-        let specimen = evaluator.apply(template, (&design, None), &[]).unwrap();
-        let own = evaluator.simulate(&specimen, Search::default(), &Plan::WINDOW, &NEVER).unwrap();
+        let scenario = evaluator.apply(template, (&design, None), &[]).unwrap();
+        let own = evaluator.simulate(&scenario, Search::default(), &Plan::WINDOW, &NEVER).unwrap();
         assert!(own.taught.is_some());
         assert_eq!(found, own);
     }

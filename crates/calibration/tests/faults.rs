@@ -103,9 +103,9 @@ fn recorded(evaluator: &Evaluator, cell: u64) -> Vec<Recorded> {
             })
             .collect();
         let infill = Design::infill(design[0], design[1]);
-        let specimen = evaluator.apply(template, (&infill, None), &values).unwrap();
-        let rig = evaluator.rig(&specimen, None, 1.0).unwrap();
-        let grasp = Grasp::of(&specimen.finger);
+        let scenario = evaluator.apply(template, (&infill, None), &values).unwrap();
+        let rig = evaluator.rig(&scenario, None, 1.0).unwrap();
+        let grasp = Grasp::of(&scenario.finger);
         let mm = |column: &str| at(row, &format!("direct_{column}_mm"));
         let starts = [mm("start"), mm("negative") + 0.2, mm("positive") + 0.2];
         for start in [None].into_iter().chain(starts.map(Some)) {

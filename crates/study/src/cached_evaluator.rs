@@ -2,7 +2,7 @@
 
 use super::cache::Cache;
 use insertion::evaluation::Evaluation;
-use insertion::evaluation::evaluator::{Evaluate, Evaluations, Evaluator, Specimen};
+use insertion::evaluation::evaluator::{Evaluate, Evaluations, Evaluator, Scenario};
 use insertion::evaluation::robustness::Plan;
 use insertion::evaluation::robustness::race::Race;
 use insertion::evaluation::template::DesignError;
@@ -29,8 +29,8 @@ pub struct CachedEvaluator<'a> {
 impl Evaluate for CachedEvaluator<'_> {
     fn evaluate(&self, design: &Design, race: Option<&Race>) -> Result<Evaluations, DesignError> {
         let (plan, mut cached) = (self.plan.against(race), Vec::new());
-        let evaluations = self.evaluator.evaluate_by(design, |specimen| {
-            let (evaluation, was_cached) = self.evaluate_specimen(specimen, &plan)?;
+        let evaluations = self.evaluator.evaluate_by(design, |scenario| {
+            let (evaluation, was_cached) = self.evaluate_scenario(scenario, &plan)?;
             cached.push(was_cached);
             Ok(evaluation)
         })?;
@@ -44,8 +44,8 @@ impl CachedEvaluator<'_> {
         let (cache, plan) = (self.cache?, self.plan.against(race));
         let stiffness = self.evaluator.predict(design).ok()?;
         let on = |template| {
-            let specimen = self.evaluator.specimen(template, design, stiffness).ok()?;
-            cache.get(&self.key(cache, &specimen, &plan))
+            let scenario = self.evaluator.scenario(template, design, stiffness).ok()?;
+            cache.get(&self.key(cache, &scenario, &plan))
         };
         let tasks: Vec<_> = self.evaluator.templates.iter().map(on).collect::<Option<_>>()?;
         let cached = vec![true; tasks.len()];
@@ -57,31 +57,31 @@ impl CachedEvaluator<'_> {
         let Some(cache) = self.cache else { return };
         let plan = self.plan.against(race);
         for (template, evaluation) in self.evaluator.templates.iter().zip(&evaluations.tasks) {
-            if let Ok(specimen) = self.evaluator.specimen(template, design, evaluations.stiffness) {
-                cache.put(&self.key(cache, &specimen, &plan), evaluation);
+            if let Ok(scenario) = self.evaluator.scenario(template, design, evaluations.stiffness) {
+                cache.put(&self.key(cache, &scenario, &plan), evaluation);
             }
         }
     }
 
-    /// Returns the key of a specimen (task, finger and robot of a design) in the cache.
-    fn key(&self, cache: &Cache, specimen: &Specimen, plan: &Plan) -> String {
-        cache.key(&(specimen, self.search, plan))
+    /// Returns the key of a scenario (task, finger and robot of a design) in the cache.
+    fn key(&self, cache: &Cache, scenario: &Scenario, plan: &Plan) -> String {
+        cache.key(&(scenario, self.search, plan))
     }
 
-    /// Evaluates a specimen; returns the evaluation, and whether it was in the cache.
+    /// Evaluates a scenario; returns the evaluation, and whether it was in the cache.
     ///
     /// # Errors
     /// If the design cannot be simulated.
-    pub fn evaluate_specimen(
+    pub fn evaluate_scenario(
         &self,
-        specimen: &Specimen,
+        scenario: &Scenario,
         plan: &Plan,
     ) -> Result<(Evaluation, bool), DesignError> {
-        let entry = self.cache.map(|cache| (cache, self.key(cache, specimen, plan)));
+        let entry = self.cache.map(|cache| (cache, self.key(cache, scenario, plan)));
         if let Some(found) = entry.as_ref().and_then(|(cache, key)| cache.get(key)) {
             return Ok((found, true));
         }
-        let evaluation = self.evaluator.simulate(specimen, self.search, plan, self.stop)?;
+        let evaluation = self.evaluator.simulate(scenario, self.search, plan, self.stop)?;
         // A cancelled evaluation may lack trials.
         if let Some((cache, key)) = entry.filter(|_| !self.stop.load(Ordering::SeqCst)) {
             cache.put(&key, &evaluation);

@@ -206,8 +206,8 @@ impl Confirmer<'_> {
     /// Evaluates a design with the stiffnesses computed from its ribs.
     fn computed(&self, evaluator: &Evaluator, design: &Design) -> ByRibs {
         let (search, plan, stop) = (Search::default(), &Plan::WINDOW, self.walker.stop);
-        let evaluations = evaluator.evaluate_by(design, |specimen| {
-            evaluator.simulate_or_teach(specimen, search, plan, stop)
+        let evaluations = evaluator.evaluate_by(design, |scenario| {
+            evaluator.simulate_or_teach(scenario, search, plan, stop)
         });
         match evaluations {
             Ok(evaluations) => ByRibs::Measured(evaluations.tasks),
@@ -228,8 +228,8 @@ impl Confirmer<'_> {
             if let Some(Some(firm)) = known.get(at) {
                 return Ok(*firm);
             }
-            let specimen = evaluator.specimen(template, &recorded.design, recorded.stiffness)?;
-            Ok(evaluator.firm(&specimen, task, seed, stop)?)
+            let scenario = evaluator.scenario(template, &recorded.design, recorded.stiffness)?;
+            Ok(evaluator.firm(&scenario, task, seed, stop)?)
         };
         let tasks = evaluator.templates.iter().zip(&recorded.tasks).enumerate();
         let firm: Result<Vec<FirmResult>, DesignError> = tasks.map(firm_on).collect();

@@ -6,7 +6,7 @@ use crate::failure::Failure;
 use crate::setup::finger::FingerRequest;
 use crate::setup::request::SetupRequest;
 use contact::mjcf::{self, MjcfSettings};
-use insertion::evaluation::evaluator::Specimen;
+use insertion::evaluation::evaluator::Scenario;
 use insertion::trial::cell;
 use serde::Serialize;
 use std::path::PathBuf;
@@ -44,7 +44,7 @@ pub struct ExportedScene {
 impl command::Request for Request {
     fn run(&self, _context: &Context<'_>) -> Result<Output, Failure> {
         let setup = self.setup.setup()?;
-        let Specimen { task, finger, robot, .. } = self.finger.choose(&setup)?.specimen;
+        let Scenario { task, finger, robot, .. } = self.finger.choose(&setup)?.scenario;
         let mounted = robot.mount(task.turn, task.strategy.tilt).map_err(Failure::input)?;
         let scene = cell::build(&task, &mounted, &finger).scene;
         let remedy = match scene.first_patch() {

@@ -8,7 +8,7 @@ use crate::setup::finger::{FingerRequest, InfillRequest};
 use crate::setup::request::{SetupRequest, TaskSource};
 use crate::setup::task::read_task;
 use crate::setup::words::parse_pair;
-use insertion::evaluation::evaluator::Specimen;
+use insertion::evaluation::evaluator::Scenario;
 use insertion::outcome::Outcome;
 use insertion::trial::picture;
 use report::sheet::{self, Picture};
@@ -83,7 +83,7 @@ fn draw(
     let setup = SetupRequest { tasks, ..SetupRequest::default() };
     let trial = trial::Request { setup, finger, offset_mm, ..trial::Request::default() };
     let done = trial.done(context)?;
-    let Specimen { task, finger, .. } = done.chosen.specimen;
+    let Scenario { task, finger, .. } = done.chosen.scenario;
     let svg = picture::final_state(&task, &finger.pad, &done.trial);
     Ok(Picture { outcome: done.trial.outcome, svg, task: task.name })
 }

@@ -6,7 +6,7 @@ use connector::seat::section;
 use input::shipped::{LEVERS, PRIORS};
 use input::units::MM;
 use insertion::evaluation::cell::Priors;
-use insertion::evaluation::evaluator::Specimen;
+use insertion::evaluation::evaluator::Scenario;
 use insertion::evaluation::template::DesignError;
 use insertion::task::Task;
 use parameters::numbers::{CLEARANCE, Kind};
@@ -35,7 +35,7 @@ pub struct LeverParameter {
 /// those of the shipped files.
 pub fn lever_parameters(
     analysis: &LeverAnalysis<'_>,
-    specimen: &Specimen,
+    scenario: &Scenario,
 ) -> Result<Vec<LeverParameter>, DesignError> {
     let own = Priors::parse(LEVERS[0].text, LEVERS[0].file)?.parameters;
     let bench = Priors::parse(PRIORS[0].text, PRIORS[0].file)?.parameters;
@@ -43,7 +43,7 @@ pub fn lever_parameters(
     let (last, first): (Vec<_>, Vec<_>) =
         own.into_iter().partition(|row| LAST.contains(&&*row.name));
     let with_value = |mut parameter: Parameter| {
-        let value = current_value(analysis, specimen, &parameter.path)?;
+        let value = current_value(analysis, scenario, &parameter.path)?;
         if let Some(of) = analysis.space.parameters.iter().find(|of| of.key == parameter.path) {
             let source = format!("the space `{}`: {}", analysis.space.name, of.source);
             let (low, high) = (of.low, of.high);
@@ -55,15 +55,15 @@ pub fn lever_parameters(
 }
 
 /// Returns the current value of the parameter with a path; `None` if task, finger and robot do not have it.
-fn current_value(analysis: &LeverAnalysis<'_>, specimen: &Specimen, path: &Path) -> Option<f64> {
+fn current_value(analysis: &LeverAnalysis<'_>, scenario: &Scenario, path: &Path) -> Option<f64> {
     let LeverAnalysis { evaluator, template, design, .. } = analysis;
     match path.kind() {
         Kind::File => design.get(path).or_else(|| evaluator.number(template, path)),
-        Kind::Added if *path == CLEARANCE => Some(clearance(&specimen.task) / MM),
+        Kind::Added if *path == CLEARANCE => Some(clearance(&scenario.task) / MM),
         Kind::Added => Some(0.0),
         Kind::Robot => evaluator.robot.number(path),
         Kind::Finger => {
-            let mut finger = specimen.finger;
+            let mut finger = scenario.finger;
             finger.number(path).map(|(number, unit)| *number / unit)
         }
         Kind::Infill | Kind::Springs | Kind::Error | Kind::Fixed => None,
@@ -79,8 +79,8 @@ fn clearance(task: &Task) -> f64 {
 }
 
 impl LeverParameter {
-    /// Returns value and specimen at a bound, or at the feasible value nearest to it.
-    pub fn at(&self, analysis: &LeverAnalysis<'_>, end: End) -> Option<(f64, Specimen)> {
+    /// Returns value and scenario at a bound, or at the feasible value nearest to it.
+    pub fn at(&self, analysis: &LeverAnalysis<'_>, end: End) -> Option<(f64, Scenario)> {
         let LeverAnalysis { evaluator, template, design, given, .. } = analysis;
         let changed = |to: f64| {
             let value = self.parameter.applied(self.value, to);
@@ -89,9 +89,9 @@ impl LeverParameter {
                 return None;
             }
             let set = [(&self.parameter, to)];
-            let specimen = evaluator.apply(template, (design, *given), &set).ok()?;
-            evaluator.rig(&specimen, None, 1.0).ok()?;
-            Some((value, specimen))
+            let scenario = evaluator.apply(template, (design, *given), &set).ok()?;
+            evaluator.rig(&scenario, None, 1.0).ok()?;
+            Some((value, scenario))
         };
         farthest(&self.parameter, self.value, end, changed)
     }
@@ -122,7 +122,7 @@ mod tests {
         };
         let (template, design) = (&evaluator.templates[0], Design::infill(20.0, 10.0));
         let stiffness = evaluator.predict(&design).unwrap();
-        let specimen = evaluator.specimen(template, &design, stiffness).unwrap();
+        let scenario = evaluator.scenario(template, &design, stiffness).unwrap();
         let space = Space::parse(SPACES[0].text, SPACES[0].file).unwrap();
         let analysis = LeverAnalysis {
             evaluator: &evaluator,
@@ -132,9 +132,9 @@ mod tests {
             given: None,
             done: &|_| (),
         };
-        let value = |path| current_value(&analysis, &specimen, &Path::new(path).unwrap());
-        assert_eq!(value(TILTING_KEY), Some(specimen.finger.rotation[0]));
-        assert_eq!(value(RCC_KEY), Some(specimen.finger.rcc / MM));
+        let value = |path| current_value(&analysis, &scenario, &Path::new(path).unwrap());
+        assert_eq!(value(TILTING_KEY), Some(scenario.finger.rotation[0]));
+        assert_eq!(value(RCC_KEY), Some(scenario.finger.rcc / MM));
         assert_eq!(value("finger.stiffness"), None);
     }
 }

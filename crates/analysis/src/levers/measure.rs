@@ -2,7 +2,7 @@
 
 use super::bounds::{LeverParameter, lever_parameters};
 use super::lever::{Base, Lever, Levers};
-use insertion::evaluation::evaluator::{Evaluator, Specimen};
+use insertion::evaluation::evaluator::{Evaluator, Scenario};
 use insertion::evaluation::robustness::Plan;
 use insertion::evaluation::template::{DesignError, Template};
 use insertion::evaluation::tolerance::Search;
@@ -34,7 +34,7 @@ pub struct LeverAnalysis<'a> {
     pub done: &'a (dyn Fn([usize; 2]) + Sync),
 }
 
-/// Lever to be measured, and the index of the specimen of each end; an end that changes nothing has index 0, the
+/// Lever to be measured, and the index of the scenario of each end; an end that changes nothing has index 0, the
 /// baseline.
 type Candidate = (Lever, [usize; 2]);
 
@@ -50,21 +50,21 @@ impl LeverAnalysis<'_> {
         stop: &AtomicBool,
     ) -> Result<Levers, DesignError> {
         let LeverAnalysis { evaluator, template, design, given, done, .. } = *self;
-        let mut specimens = vec![evaluator.apply(template, (design, given), &[])?];
+        let mut scenarios = vec![evaluator.apply(template, (design, given), &[])?];
         if infill.is_none() {
             for design in self.extremes()? {
-                specimens.push(evaluator.apply(template, (&design, None), &[])?);
+                scenarios.push(evaluator.apply(template, (&design, None), &[])?);
             }
         }
-        let infills = specimens.len();
-        let (candidates, left_out) = self.candidates(&mut specimens)?;
+        let infills = scenarios.len();
+        let (candidates, left_out) = self.candidates(&mut scenarios)?;
         let count = AtomicUsize::new(0);
-        let window = |specimen| {
-            let found = self.window(specimen, stop);
-            done([count.fetch_add(1, Ordering::Relaxed) + 1, specimens.len()]);
+        let window = |scenario| {
+            let found = self.window(scenario, stop);
+            done([count.fetch_add(1, Ordering::Relaxed) + 1, scenarios.len()]);
             found
         };
-        let found = specimens.par_iter().map(window).collect::<Result<Vec<_>, _>>()?;
+        let found = scenarios.par_iter().map(window).collect::<Result<Vec<_>, _>>()?;
         let ranges: Vec<_> = found.iter().map(range_mm).collect();
         let base = Base {
             range_mm: ranges[0].unwrap_or(0.0),
@@ -86,37 +86,37 @@ impl LeverAnalysis<'_> {
             infill: infill.unwrap_or_else(over),
             levers,
             left_out,
-            windows: specimens.len(),
+            windows: scenarios.len(),
         })
     }
 
-    /// Returns the levers to measure and the names of those that exceed [`MOST_WINDOWS`]. The specimens of their ends
-    /// are appended to `specimens`, the first of which is the baseline.
+    /// Returns the levers to measure and the names of those that exceed [`MOST_WINDOWS`]. The scenarios of their ends
+    /// are appended to `scenarios`, the first of which is the baseline.
     fn candidates(
         &self,
-        specimens: &mut Vec<Specimen>,
+        scenarios: &mut Vec<Scenario>,
     ) -> Result<(Vec<Candidate>, Vec<String>), DesignError> {
-        let base = specimens[0].clone();
+        let base = scenarios[0].clone();
         let (mut candidates, mut left_out) = (Vec::new(), Vec::new());
         for lever in lever_parameters(self, &base)? {
             let (mut more, mut values, mut windows) = (Vec::new(), [lever.value; 2], [0; 2]);
             for (end, bound) in [End::Low, End::High].into_iter().enumerate() {
-                // A chamfer of 0 makes a different specimen of the same shape, whose window can differ.
+                // A chamfer of 0 makes a different scenario of the same shape, whose window can differ.
                 let changed = lever.at(self, bound).filter(|(value, _)| *value != lever.value);
-                let Some((value, specimen)) = changed else { continue };
-                if specimen != base {
-                    (values[end], windows[end]) = (value, specimens.len() + more.len());
-                    more.push(specimen);
+                let Some((value, scenario)) = changed else { continue };
+                if scenario != base {
+                    (values[end], windows[end]) = (value, scenarios.len() + more.len());
+                    more.push(scenario);
                 }
             }
             if more.is_empty() {
                 continue;
             }
-            if specimens.len() + more.len() > MOST_WINDOWS {
+            if scenarios.len() + more.len() > MOST_WINDOWS {
                 left_out.push(lever.parameter.name);
                 continue;
             }
-            specimens.append(&mut more);
+            scenarios.append(&mut more);
             candidates.push((lever.unmeasured(values), windows));
         }
         Ok((candidates, left_out))
@@ -141,11 +141,11 @@ impl LeverAnalysis<'_> {
         Ok([all.first(), all.last()].map(|of| of.map_or(*design, |(_, design)| design).clone()))
     }
 
-    /// Measures the window around the start taught for a specimen.
-    fn window(&self, specimen: &Specimen, stop: &AtomicBool) -> Result<Evaluation, DesignError> {
-        let mut specimen = specimen.clone();
-        specimen.task.strategy.rule = StartRule::Taught;
-        self.evaluator.simulate(&specimen, Search::default(), &Plan::WINDOW, stop)
+    /// Measures the window around the start taught for a scenario.
+    fn window(&self, scenario: &Scenario, stop: &AtomicBool) -> Result<Evaluation, DesignError> {
+        let mut scenario = scenario.clone();
+        scenario.task.strategy.rule = StartRule::Taught;
+        self.evaluator.simulate(&scenario, Search::default(), &Plan::WINDOW, stop)
     }
 }
 

@@ -7,7 +7,7 @@ use super::question::Identification;
 use super::smoother::{Datum, Predicted};
 use super::touch::{bias, touch};
 use input::units::MM;
-use insertion::evaluation::evaluator::Specimen;
+use insertion::evaluation::evaluator::Scenario;
 use insertion::evaluation::template::DesignError;
 use insertion::outcome::Outcome;
 use insertion::robot::Robot;
@@ -160,10 +160,10 @@ impl Identification<'_> {
         let Identification { evaluator, template, .. } = self;
         let mut all = Vec::with_capacity(attempts.len());
         for alike in attempts.chunk_by(|a, b| a.design == b.design) {
-            let specimen = evaluator.apply(template, (&alike[0].design, None), values)?;
-            let specimen = Specimen { robot: robot.clone(), ..specimen };
-            let rig = evaluator.rig(&specimen, None, step_factor)?;
-            let grasp = Grasp { stop: self.stop, ..Grasp::of(&specimen.finger) };
+            let scenario = evaluator.apply(template, (&alike[0].design, None), values)?;
+            let scenario = Scenario { robot: robot.clone(), ..scenario };
+            let rig = evaluator.rig(&scenario, None, step_factor)?;
+            let grasp = Grasp { stop: self.stop, ..Grasp::of(&scenario.finger) };
             let trajectories: Vec<_> = alike.iter().map(|logged| &logged.trajectory).collect();
             let followed = rig.follow(grasp, Command::Trajectories(&trajectories), STEP_S);
             all.extend(followed.into_iter().map(|(trial, samples)| {

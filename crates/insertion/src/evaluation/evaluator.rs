@@ -1,4 +1,4 @@
-//! Evaluation of designs: their specimens, rigs and measurements.
+//! Evaluation of designs: their scenarios, rigs and measurements.
 
 use super::cell::{Priors, change};
 use super::robustness::firm::{self, FirmResult};
@@ -46,8 +46,8 @@ use std::sync::atomic::AtomicBool;
 /// };
 /// let design = Design::infill(20.0, 10.0);
 /// let stiffness = evaluator.predict(&design)?;
-/// let specimen = evaluator.specimen(&evaluator.templates[0], &design, stiffness)?;
-/// assert!(specimen.finger.assembly > 10.0 * specimen.finger.compliance);
+/// let scenario = evaluator.scenario(&evaluator.templates[0], &design, stiffness)?;
+/// assert!(scenario.finger.assembly > 10.0 * scenario.finger.compliance);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub struct Evaluator {
@@ -68,7 +68,7 @@ pub struct Evaluator {
 
 /// Design with the task, finger and robot that result from its numbers and those of the cell, ready for simulation.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Specimen {
+pub struct Scenario {
     /// Task with the numbers of the design and the cell.
     pub task: Task,
     /// Design.
@@ -81,7 +81,7 @@ pub struct Specimen {
     pub robot: Robot,
 }
 
-impl Specimen {
+impl Scenario {
     /// Returns the source of the finger's remote centre.
     pub fn centre_source(&self) -> CentreSource {
         match (self.design.get(RCC_KEY), self.task.finger.rcc) {
@@ -125,24 +125,24 @@ impl Evaluator {
         }
     }
 
-    /// Returns the specimen of a design with the given stiffness on one of the tasks.
-    pub fn specimen(
+    /// Returns the scenario of a design with the given stiffness on one of the tasks.
+    pub fn scenario(
         &self,
         template: &Template,
         design: &Design,
         stiffness: Prediction,
-    ) -> Result<Specimen, DesignError> {
-        self.specimen_under(template, design, stiffness, &self.rows(Some(template)))
+    ) -> Result<Scenario, DesignError> {
+        self.scenario_under(template, design, stiffness, &self.rows(Some(template)))
     }
 
-    /// Returns the specimen with these values of a cell's parameters for the numbers that the design does not set.
-    pub(super) fn specimen_under(
+    /// Returns the scenario with these values of a cell's parameters for the numbers that the design does not set.
+    pub(super) fn scenario_under(
         &self,
         template: &Template,
         design: &Design,
         stiffness: Prediction,
         rows: &[(&Parameter, f64)],
-    ) -> Result<Specimen, DesignError> {
+    ) -> Result<Scenario, DesignError> {
         for (key, axis) in [
             ("stiffness_compliance_n_per_mm", stiffness.compliance),
             ("stiffness_assembly_n_per_mm", stiffness.assembly),
@@ -154,32 +154,32 @@ impl Evaluator {
         let set = self.completed(Some(template), design, rows);
         let (task, finger) = template.apply(&set, &self.fingers, &stiffness)?;
         let robot = self.robot.clone();
-        let mut specimen = Specimen { task, design: design.clone(), finger, stiffness, robot };
+        let mut scenario = Scenario { task, design: design.clone(), finger, stiffness, robot };
         for (row, value) in rows.iter().filter(|(row, _)| design.get(&row.path).is_none()) {
-            change(row, *value, &mut specimen);
+            change(row, *value, &mut scenario);
         }
-        Ok(specimen)
+        Ok(scenario)
     }
 
-    /// Returns the shift of a specimen's taught start, grid steps; `None` if its task has no taught start, 0 if
+    /// Returns the shift of a scenario's taught start, grid steps; `None` if its task has no taught start, 0 if
     /// no start inserts. The result is invalid once `stop` is set.
     pub fn taught(
         &self,
-        specimen: &Specimen,
+        scenario: &Scenario,
         stop: &AtomicBool,
     ) -> Result<Option<OffsetStep>, RigError> {
-        if specimen.task.strategy.rule == StartRule::Given {
+        if scenario.task.strategy.rule == StartRule::Given {
             return Ok(None);
         }
-        let rig = self.rig(specimen, None, 1.0)?;
-        Ok(Some(teach(&*rig, &specimen.finger, stop).map_or(0, |taught| taught.shift)))
+        let rig = self.rig(scenario, None, 1.0)?;
+        Ok(Some(teach(&*rig, &scenario.finger, stop).map_or(0, |taught| taught.shift)))
     }
 
-    /// Returns the rig of a specimen, with its start shifted to the taught one if given, and `step_factor` times the
+    /// Returns the rig of a scenario, with its start shifted to the taught one if given, and `step_factor` times the
     /// time step.
     pub fn rig(
         &self,
-        Specimen { task, finger, robot, .. }: &Specimen,
+        Scenario { task, finger, robot, .. }: &Scenario,
         taught: Option<OffsetStep>,
         step_factor: f64,
     ) -> Result<Box<dyn Rig>, RigError> {
@@ -190,50 +190,50 @@ impl Evaluator {
         }
     }
 
-    /// Simulates a specimen according to a plan. The result is invalid once `stop` is set.
+    /// Simulates a scenario according to a plan. The result is invalid once `stop` is set.
     pub fn simulate(
         &self,
-        specimen: &Specimen,
+        scenario: &Scenario,
         search: Search,
         plan: &Plan,
         stop: &AtomicBool,
     ) -> Result<Evaluation, DesignError> {
-        let taught = self.taught(specimen, stop)?;
-        let rig = self.rig(specimen, taught, 1.0)?;
-        let grasp = Grasp { stop, ..Grasp::of(&specimen.finger) };
+        let taught = self.taught(scenario, stop)?;
+        let rig = self.rig(scenario, taught, 1.0)?;
+        let grasp = Grasp { stop, ..Grasp::of(&scenario.finger) };
         let draw = |(cell, values): (&Priors, &Vec<f64>)| -> Result<Drawn, DesignError> {
-            let drawn = self.in_cell(specimen, cell, values)?;
+            let drawn = self.in_cell(scenario, cell, values)?;
             Ok((self.rig(&drawn, taught, 1.0)?, drawn.finger))
         };
         let draws = plan.cells.iter().flat_map(|(cell, all)| all.iter().map(move |v| (cell, v)));
         let cells: Vec<Drawn> = draws.map(draw).collect::<Result<_, _>>()?;
-        let predicted = &specimen.stiffness;
+        let predicted = &scenario.stiffness;
         let evaluation = robustness::evaluate(&*rig, grasp, predicted, search, plan, &cells);
         Ok(Evaluation { taught, ..evaluation })
     }
 
-    /// Simulates a specimen, with a taught start if the nominal start fails.
+    /// Simulates a scenario, with a taught start if the nominal start fails.
     pub fn simulate_or_teach(
         &self,
-        specimen: &Specimen,
+        scenario: &Scenario,
         search: Search,
         plan: &Plan,
         stop: &AtomicBool,
     ) -> Result<Evaluation, DesignError> {
-        let evaluation = self.simulate(specimen, search, plan, stop)?;
+        let evaluation = self.simulate(scenario, search, plan, stop)?;
         if evaluation.window.nominal == Outcome::Inserted {
             return Ok(evaluation);
         }
-        let mut taught = specimen.clone();
+        let mut taught = scenario.clone();
         taught.task.strategy.rule = StartRule::Taught;
         self.simulate(&taught, search, plan, stop)
     }
 
-    /// Measures the [firm window](firm) of a specimen by [`firm::REPEATS`] repeats; `measured` has its window. The
+    /// Measures the [firm window](firm) of a scenario by [`firm::REPEATS`] repeats; `measured` has its window. The
     /// result is invalid once `stop` is set.
     pub fn firm(
         &self,
-        specimen: &Specimen,
+        scenario: &Scenario,
         measured: &Evaluation,
         seed: u64,
         stop: &AtomicBool,
@@ -241,9 +241,9 @@ impl Evaluator {
         if measured.window.nominal != Outcome::Inserted {
             return Ok(FirmResult::default());
         }
-        let rig = |factor| self.rig(specimen, measured.taught, factor);
+        let rig = |factor| self.rig(scenario, measured.taught, factor);
         let (whole, half) = (rig(1.0)?, rig(0.5)?);
-        let grasp = Grasp { stop, ..Grasp::of(&specimen.finger) };
+        let grasp = Grasp { stop, ..Grasp::of(&scenario.finger) };
         let repeats = Repeats::new([&*whole, &*half], grasp, seed, firm::REPEATS);
         Ok(firm::measure(&repeats, &measured.window))
     }
@@ -252,10 +252,10 @@ impl Evaluator {
     pub fn evaluate_by(
         &self,
         design: &Design,
-        mut measure: impl FnMut(&Specimen) -> Result<Evaluation, DesignError>,
+        mut measure: impl FnMut(&Scenario) -> Result<Evaluation, DesignError>,
     ) -> Result<Evaluations, DesignError> {
         let stiffness = self.predict(design)?;
-        let on = |template| measure(&self.specimen(template, design, stiffness)?);
+        let on = |template| measure(&self.scenario(template, design, stiffness)?);
         let tasks = self.templates.iter().map(on).collect::<Result<_, DesignError>>()?;
         Ok(Evaluations { stiffness, tasks, cached: Vec::new() })
     }

@@ -4,7 +4,7 @@ use ask_tell::stream::stream;
 use finger_opt::failure::Failure;
 use input::shipped::PRIORS;
 use insertion::evaluation::cell::Priors;
-use insertion::evaluation::evaluator::{Evaluator, Specimen};
+use insertion::evaluation::evaluator::{Evaluator, Scenario};
 use insertion::evaluation::taught::{Shifted, TaughtStart, teach};
 use insertion::evaluation::template::Template;
 use insertion::evaluation::tolerance::{self, Search};
@@ -56,8 +56,8 @@ impl<'a> HiddenCell<'a> {
             });
             let hidden = named.map(|prior| (prior.clone(), prior.at(random.random()))).collect();
             let cell = HiddenCell { number, draws, evaluator, template, hidden };
-            let specimen = cell.setup(&Design::infill(MIDDLE[0], MIDDLE[1]))?;
-            if window(&specimen, EngineKind::Direct, None)?.is_some() {
+            let scenario = cell.setup(&Design::infill(MIDDLE[0], MIDDLE[1]))?;
+            if window(&scenario, EngineKind::Direct, None)?.is_some() {
                 return Ok(cell);
             }
         }
@@ -65,7 +65,7 @@ impl<'a> HiddenCell<'a> {
     }
 
     /// Returns the finger of a design, with task and robot of the cell.
-    pub fn setup(&self, design: &Design) -> Result<Specimen, Failure> {
+    pub fn setup(&self, design: &Design) -> Result<Scenario, Failure> {
         let values: Vec<_> = self.hidden.iter().map(|(prior, value)| (prior, *value)).collect();
         self.evaluator.apply(self.template, (design, None), &values).map_err(Failure::input)
     }
@@ -95,15 +95,15 @@ impl FingerWindows {
         engine: EngineKind,
     ) -> Result<Self, Failure> {
         let design = Design::infill(finger.density_percent, finger.direction_deg);
-        let specimen = cell.setup(&design)?;
-        let direct = window(&specimen, EngineKind::Direct, None)?;
+        let scenario = cell.setup(&design)?;
+        let direct = window(&scenario, EngineKind::Direct, None)?;
         let clock = Instant::now();
         let near = direct.as_ref().map_or(0, |taught| taught.shift);
-        let truth = window(&specimen, engine, Some(near))?;
+        let truth = window(&scenario, engine, Some(near))?;
         let elapsed_s = clock.elapsed().as_secs_f64();
         let nominal = cell.evaluator.apply(cell.template, (&design, None), &[]);
-        let specimen = nominal.map_err(Failure::input)?;
-        let nominal = window(&specimen, EngineKind::Direct, None)?;
+        let scenario = nominal.map_err(Failure::input)?;
+        let nominal = window(&scenario, EngineKind::Direct, None)?;
         let taught_again = truth.as_ref().is_none_or(|truth| truth.shift != near);
         let windows = [truth, direct, nominal];
         Ok(FingerWindows { finger: *finger, windows, taught_again, elapsed_s })
@@ -156,11 +156,11 @@ fn cells(taught: &TaughtStart) -> String {
 /// Determines the window around the start `near`, in grid steps, or, if that does not insert, around the taught start;
 /// `None` if no start inserts.
 pub fn window(
-    specimen: &Specimen,
+    scenario: &Scenario,
     engine: EngineKind,
     near: Option<OffsetStep>,
 ) -> Result<Option<TaughtStart>, Failure> {
-    let Specimen { task, finger, robot, .. } = specimen;
+    let Scenario { task, finger, robot, .. } = scenario;
     let rig = engine.rig(task, robot, finger, 1.0).map_err(Failure::input)?;
     if let Some(shift) = near {
         let moved = Shifted { rig: &*rig, shift };

@@ -68,9 +68,9 @@ pub fn line(
     let identified = others.par_iter().map(|one| {
         let design = Design::infill(one.finger.density_percent, one.finger.direction_deg);
         let under = cell.evaluator.apply(cell.template, (&design, None), &values);
-        let mut specimen = under.map_err(Failure::input)?;
-        specimen.robot = robot.clone().unwrap_or(specimen.robot);
-        let taught = window(&specimen, EngineKind::Direct, None)?;
+        let mut scenario = under.map_err(Failure::input)?;
+        scenario.robot = robot.clone().unwrap_or(scenario.robot);
+        let taught = window(&scenario, EngineKind::Direct, None)?;
         Ok(taught.map_or(0.0, |taught| taught.window.range_mm()))
     });
     let identified = identified.collect::<Result<Vec<f64>, Failure>>()?;

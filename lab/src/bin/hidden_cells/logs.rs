@@ -4,7 +4,7 @@ use super::cell::{FingerWindows, HiddenCell};
 use calibration::identify::log::of_samples;
 use finger_opt::failure::Failure;
 use input::units::MM;
-use insertion::evaluation::evaluator::Specimen;
+use insertion::evaluation::evaluator::Scenario;
 use insertion::space::Design;
 use insertion::trial::engine::EngineKind;
 use insertion::trial::{Command, Grasp, Probe, Rig, Sample};
@@ -31,8 +31,8 @@ pub fn write(
 ) -> Result<(), Failure> {
     let mut runs = "log,infill_density_percent,infill_direction_deg,offset_mm,outcome\n".to_owned();
     for (finger, [density, direction]) in LOGGED.into_iter().enumerate() {
-        let specimen = cell.setup(&Design::infill(density, direction))?;
-        let Specimen { task, finger: held, robot, .. } = specimen;
+        let scenario = cell.setup(&Design::infill(density, direction))?;
+        let Scenario { task, finger: held, robot, .. } = scenario;
         let rig = engine.rig(&task, &robot, &held, 1.0).map_err(Failure::input)?;
         let grasp = Grasp::of(&held);
         let known = |one: &&FingerWindows| one.finger.infill() == [density, direction];

@@ -1,7 +1,7 @@
 //! Application of parameter values to task, finger and robot.
 
 use super::Priors;
-use crate::evaluation::evaluator::{Evaluator, Specimen};
+use crate::evaluation::evaluator::{Evaluator, Scenario};
 use crate::evaluation::template::{DesignError, Template};
 use crate::finger::file::is_shape;
 use crate::finger::model::FingerSource;
@@ -16,8 +16,8 @@ use parameters::numbers::{CLEARANCE, EDGE_RADIUS, FLANGE, Kind};
 use parameters::{Parameter, Path, Transform};
 
 /// Applies a value of a parameter to the finger or to the shapes of the task.
-pub(in crate::evaluation) fn change(parameter: &Parameter, value: f64, specimen: &mut Specimen) {
-    let Specimen { finger, task, .. } = specimen;
+pub(in crate::evaluation) fn change(parameter: &Parameter, value: f64, scenario: &mut Scenario) {
+    let Scenario { finger, task, .. } = scenario;
     match parameter.path.kind() {
         Kind::Finger => {
             if let Some((number, unit)) = finger.number(&parameter.path) {
@@ -185,7 +185,7 @@ impl Evaluator {
         set
     }
 
-    /// Returns the specimen of a design with these values of parameters, in addition to those of the cell.
+    /// Returns the scenario of a design with these values of parameters, in addition to those of the cell.
     /// The stiffness is predicted unless given.
     ///
     /// # Errors
@@ -195,7 +195,7 @@ impl Evaluator {
         template: &Template,
         (design, given): (&Design, Option<Prediction>),
         values: &[(&Parameter, f64)],
-    ) -> Result<Specimen, DesignError> {
+    ) -> Result<Scenario, DesignError> {
         let mut set = design.clone();
         for (parameter, value) in values {
             let path = &parameter.path;
@@ -206,23 +206,23 @@ impl Evaluator {
             }
         }
         let stiffness = given.map_or_else(|| self.predict(&set), Ok)?;
-        let mut specimen = self.specimen(template, &set, stiffness)?;
+        let mut scenario = self.scenario(template, &set, stiffness)?;
         for (parameter, value) in values {
-            change(parameter, *value, &mut specimen);
-            specimen.robot.change(parameter, *value);
+            change(parameter, *value, &mut scenario);
+            scenario.robot.change(parameter, *value);
         }
-        Ok(specimen)
+        Ok(scenario)
     }
 
-    /// Returns the specimen with these values of another cell's parameters. The parameters of the evaluator's cell
+    /// Returns the scenario with these values of another cell's parameters. The parameters of the evaluator's cell
     /// whose paths the other cell lacks still apply.
     pub(in crate::evaluation) fn in_cell(
         &self,
-        specimen: &Specimen,
+        scenario: &Scenario,
         cell: &Priors,
         values: &[f64],
-    ) -> Result<Specimen, DesignError> {
-        let Specimen { task, design, stiffness, .. } = specimen;
+    ) -> Result<Scenario, DesignError> {
+        let Scenario { task, design, stiffness, .. } = scenario;
         let Some(template) = self.templates.iter().find(|own| own.task.name == task.name) else {
             return Ok(DESIGN.fail(&task.name, "unknown task of this evaluator")?);
         };
@@ -234,7 +234,7 @@ impl Evaluator {
         let mut rows = self.rows(Some(template));
         rows.retain(|(own, _)| of_task.iter().all(|row| row.path != own.path));
         rows.extend(drawn);
-        let drawn = self.specimen_under(template, design, *stiffness, &rows)?;
-        Ok(Specimen { robot, ..drawn })
+        let drawn = self.scenario_under(template, design, *stiffness, &rows)?;
+        Ok(Scenario { robot, ..drawn })
     }
 }

@@ -159,7 +159,7 @@ def tracks(bag: Path, topics: dict[str, str]) -> tuple[Track, Track, Track | Non
             else:
                 at, turned = message.pose.position, message.pose.orientation
                 found[topic].add(message.header, [at.x, at.y, at.z, turned.x, turned.y, turned.z, turned.w])
-    if tree:
+    if pose == "/tf":
         follow(found[pose], transforms, tool)
     for track in found.values():
         if not track.stamps:

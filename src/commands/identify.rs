@@ -19,7 +19,7 @@ use input::units::N_PER_MM;
 use insertion::evaluation::cell::Priors;
 use insertion::robot::{Drive, Robot};
 use report::identify::{self as shown, html};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use study::write_file;
 
 /// Largest number of remarks in the text of an error.
@@ -89,12 +89,12 @@ impl Request {
         });
         let frame = frame.transpose()?;
         let mut assumed = Vec::new();
-        let text_of = |path: &Path| {
+        let runs = runs::read(&self.runs, frame.as_ref(), |path| {
             let (text, remarks) = log_text(path)?;
             assumed.extend(remarks);
             Ok(text)
-        };
-        let runs = runs::read(&self.runs, frame.as_ref(), text_of).map_err(Failure::input)?;
+        });
+        let runs = runs.map_err(Failure::input)?;
         let identification = Identification {
             evaluator: &setup.evaluator,
             template,

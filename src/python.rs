@@ -22,6 +22,10 @@ pub fn interpreter() -> OsString {
     std::env::var_os(PYTHON).unwrap_or_else(own)
 }
 
+/// Code that prints a warning as one line.
+const WARNINGS: &str = "import warnings
+warnings.formatwarning = lambda message, *rest: f'warning: {message}\\n'";
+
 /// File format that the package reads if one of its extras (optional dependencies) is installed.
 pub struct Format {
     /// Name with its article: `a STEP file`.
@@ -57,7 +61,7 @@ impl Format {
             Place::file(file).fault(problem)
         };
         let exit = "except Exception as error:\n    sys.exit(' '.join(str(error).split()))";
-        let code = format!("\ntry:\n    {reader}\n{exit}\n");
+        let code = format!("\n{WARNINGS}\ntry:\n    {reader}\n{exit}\n");
         let (output, messages) = output(command(&code).arg(path)).map_err(|error| fail(&error))?;
         let warnings = messages.lines().filter(|line| line.starts_with("warning: "));
         Ok((output, warnings.map(renamed).collect()))

@@ -14,9 +14,9 @@ fn pages(folder: &str) -> Vec<(PathBuf, String)> {
     pages.map(|path| (path.clone(), read(&path))).collect()
 }
 
+/// Words of all pages, as `wc -w` counts them.
 fn words(pages: &[(PathBuf, String)]) -> usize {
-    let words = |text: &str| text.split_whitespace().filter(|word| *word != "|").count();
-    pages.iter().map(|(_, text)| words(text)).sum()
+    pages.iter().map(|(_, text)| text.split_whitespace().count()).sum()
 }
 
 /// The targets of the links to files in a page, without their anchors.
@@ -43,7 +43,7 @@ fn every_link_leads_to_a_file() {
 fn the_documents_can_be_read_in_an_evening() {
     assert!(read(&root("README.md")).split_whitespace().count() <= 900);
     assert!(words(&pages("docs/guide")) <= 10_000);
-    assert!(words(&pages("docs/notes")) <= 14_000);
+    assert!(words(&pages("docs/notes")) <= 15_500);
 }
 
 #[test]

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+import warnings
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -13,11 +14,13 @@ from ._native import InputError
 from ._words import StrPath
 
 Table = NDArray[np.float64]
+#: Parent of each frame, and its pose there: m, quaternion x, y, z, w.
+Tree = dict[str, tuple[str, Table]]
 
 #: Words in the name of a pose topic that mark it as the commanded pose.
 COMMANDED = ("target", "command", "desired", "setpoint", "reference", "goal")
 #: Frame names of a tool in /tf, in order of preference.
-TOOLS = ("tcp", "tool0_controller", "tool0", "flange", "ee_link")
+TOOLS = ("tcp", "tool0_controller", "tool0", "flange", "ee_link", "tool")
 #: Columns of the table, and further columns with a commanded pose.
 HEADER = ["timestamp", *(f"actual_TCP_pose_{i}" for i in range(6)), *(f"actual_TCP_force_{i}" for i in range(3))]
 TARGET = [f"target_TCP_pose_{i}" for i in range(6)]
@@ -65,15 +68,29 @@ def text(bag: StrPath, topics: Mapping[str, str] | None = None) -> str:
 
     The force is the only WrenchStamped; the pose is the only PoseStamped that is not named like a command, or else a
     tool in /tf; ``topics`` selects other topics by ``force``, ``pose`` and ``target``. A force in another frame than
-    the pose is assumed to be in the tool frame, and is rotated. Raises ValueError if a log cannot be made.
+    the pose is rotated by /tf or, if it is in a tool frame, by the pose; that assumption is a warning. Raises
+    InputError, which begins with the bag, if a log cannot be made.
     """
-    force, pose, target = tracks(Path(bag), dict(topics or {}))
+    try:
+        return table(Path(bag), dict(topics or {}))
+    except ValueError as error:
+        raise InputError(f"{bag}: {error}") from error
+    except Exception as error:
+        raise InputError(f"{bag}: is not a ROS recording that rosbags can read: {error}") from error
+
+
+def table(bag: Path, topics: dict[str, str]) -> str:
+    """Returns the log of a bag as CSV; raises ValueError if a log cannot be made."""
+    force, pose, target, transforms = tracks(bag, topics)
     span = [stamp for stamp in force.stamps if pose.stamps[0] <= stamp <= pose.stamps[-1]]
     if not span:
         raise ValueError(f"{force.topic} and {pose.topic} have no time in common")
     poses, forces = vectors(pose.at(span)), force.at(span)
-    if force.frame not in ("", pose.frame):
-        forces = np.array([turn(at[3:]) @ vector for at, vector in zip(poses, forces)])
+    if force.frame != pose.frame:
+        turns, assumed = rotations(force, pose, transforms, poses, span)
+        forces = np.array([turn(vector) @ row for vector, row in zip(turns, forces)])
+        if assumed:
+            warnings.warn(f"{bag}: {assumed}", stacklevel=3)
     columns = [(np.array(span) - span[0])[:, None] / 1e9, poses, forces]
     header = list(HEADER)
     if target is not None:
@@ -86,13 +103,36 @@ def text(bag: StrPath, topics: Mapping[str, str] | None = None) -> str:
     return "\n".join([",".join(header), *lines]) + "\n"
 
 
-def tracks(bag: Path, topics: dict[str, str]) -> tuple[Track, Track, Track | None]:
-    """Reads force, pose and, if recorded, commanded pose."""
+def rotations(force: Track, pose: Track, transforms: list[Any], poses: Table, span: list[int]) -> tuple[Table, str]:
+    """Returns rotation vectors from the force's frame to the pose's at these stamps, rad, and what they assume.
+
+    Raises ValueError if the frames are not related.
+    """
+    def related(tree: Tree) -> tuple[str, Table] | None:
+        (root, inner), (other, outer) = placed(force.frame, tree), placed(pose.frame, tree)
+        back = outer[3:] * np.array([-1.0, -1.0, -1.0, 1.0])
+        return (pose.frame, np.concatenate([np.zeros(3), product(back, inner[3:])])) if root == other else None
+
+    found = Track("/tf")
+    follow(found, transforms, related)
+    if found.stamps:
+        return vectors(found.at([min(max(stamp, found.stamps[0]), found.stamps[-1]) for stamp in span]))[:, 3:], ""
+    if not force.frame or not pose.frame:
+        unnamed, other = (force, pose) if not force.frame else (pose, force)
+        return np.zeros((len(span), 3)), f"{unnamed.topic} names no frame; assumed: that of {other.topic}, {other.frame}"
+    if force.frame.endswith(TOOLS):
+        return poses[:, 3:], f"{force.topic} is in {force.frame}; assumed: this is the frame whose pose is {pose.topic}"
+    raise ValueError(f"{force.topic} is in {force.frame}, {pose.topic} in {pose.frame}, and no /tf relates them; record "
+                     "/tf and /tf_static, too, or both topics in one frame")
+
+
+def tracks(bag: Path, topics: dict[str, str]) -> tuple[Track, Track, Track | None, list[Any]]:
+    """Reads force, pose and, if recorded, commanded pose; and the messages of /tf and /tf_static."""
     try:
         from rosbags.highlevel import AnyReader
         from rosbags.typesys import Stores, get_typestore
     except ImportError as error:
-        raise InputError(f"{bag}: needs rosbags: pip install 'finger-opt[ros]'") from error
+        raise ValueError("needs rosbags: pip install rosbags") from error
     with AnyReader([bag], default_typestore=get_typestore(Stores.ROS2_HUMBLE)) as reader:
         kinds: dict[str, list[str]] = {}
         for connection in reader.connections:
@@ -105,24 +145,26 @@ def tracks(bag: Path, topics: dict[str, str]) -> tuple[Track, Track, Track | Non
         tree = not actual and "pose" not in topics and "TFMessage" in kinds
         pose = "/tf" if tree else chosen("pose", "PoseStamped", actual, topics)
         found = {topic: Track(str(topic)) for topic in (force, pose, target) if topic}
-        chain: dict[str, tuple[str, Table]] = {}
+        transforms: list[Any] = []
         for connection, _, raw in reader.messages():
             topic = connection.topic
-            if not (topic in found or (tree and topic in ("/tf", "/tf_static"))):
+            if topic not in (*found, "/tf", "/tf_static"):
                 continue
             message: Any = reader.deserialize(raw, connection.msgtype)
             if topic in ("/tf", "/tf_static"):
-                follow(found[pose], message, chain)
+                transforms.append(message)
             elif topic == force:
                 vector = message.wrench.force
                 found[topic].add(message.header, [vector.x, vector.y, vector.z])
             else:
                 at, turned = message.pose.position, message.pose.orientation
                 found[topic].add(message.header, [at.x, at.y, at.z, turned.x, turned.y, turned.z, turned.w])
+    if pose == "/tf":
+        follow(found[pose], transforms, tool)
     for track in found.values():
         if not track.stamps:
             raise ValueError(f"{track.topic} has no messages")
-    return found[force], found[pose], found[target] if target else None
+    return found[force], found[pose], found[target] if target else None, transforms
 
 
 def chosen(role: str, kind: str, available: Iterable[str], topics: Mapping[str, str], needed: bool = True) -> str:
@@ -131,33 +173,46 @@ def chosen(role: str, kind: str, available: Iterable[str], topics: Mapping[str, 
     if role in topics:
         return topics[role]
     if len(names) > 1:
-        raise ValueError(f"has several topics for the {role}: {', '.join(names)}; record one, or select it with "
-                         f"finger_opt.robot.bag_to_csv(.., {role}=..)")
+        raise ValueError(f"has several topics for the {role}: {', '.join(names)}; record one of them, or select it: "
+                         f"finger_opt.robot.bag_to_csv(bag, 'log.csv', {role}='{names[0]}')")
     if not names and needed:
         raise ValueError(f"has no topic of type {kind} for the {role}; an attempt needs force and pose")
     return names[0] if names else ""
 
 
-def follow(track: Track, message: Any, chain: dict[str, tuple[str, Table]]) -> None:
-    """Updates the transforms, and appends the pose of the tool in the root frame to the track."""
-    for link in message.transforms:
-        shift, turned = link.transform.translation, link.transform.rotation
-        pose = np.array([shift.x, shift.y, shift.z, turned.x, turned.y, turned.z, turned.w])
-        chain[link.child_frame_id.lstrip("/")] = link.header.frame_id.lstrip("/"), pose
-    tool = next((name for name in TOOLS if name in chain), None)
-    if tool is None:
-        return
-    frame, pose = chain[tool]
-    while frame in chain:
-        frame, outer = chain[frame]
+def follow(track: Track, messages: list[Any], pose_in: Callable[[Tree], tuple[str, Table] | None]) -> None:
+    """Appends frame and pose that ``pose_in`` finds in the tree of transforms after each message, if any."""
+    tree: Tree = {}
+    for message in messages:
+        for link in message.transforms:
+            shift, turned = link.transform.translation, link.transform.rotation
+            pose = np.array([shift.x, shift.y, shift.z, turned.x, turned.y, turned.z, turned.w])
+            tree[link.child_frame_id.lstrip("/")] = link.header.frame_id.lstrip("/"), pose
+        found = pose_in(tree)
+        if found is None or not message.transforms:
+            continue
+        header = message.transforms[0].header
+        stamp = header.stamp.sec * 10**9 + header.stamp.nanosec
+        # Messages of static transforms may have older stamps.
+        if not track.stamps or stamp > track.stamps[-1]:
+            track.frame = found[0]
+            track.stamps.append(stamp)
+            track.rows.append([float(number) for number in found[1]])
+
+
+def tool(tree: Tree) -> tuple[str, Table] | None:
+    """Returns the root of the tool's tree and the tool's pose in it; None without a tool."""
+    name = next((name for name in TOOLS if name in tree), None)
+    return None if name is None else placed(name, tree)
+
+
+def placed(frame: str, tree: Tree) -> tuple[str, Table]:
+    """Returns the root of a frame's tree, and the frame's pose in it."""
+    pose = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0])
+    while frame in tree:
+        frame, outer = tree[frame]
         pose = np.concatenate([outer[:3] + rotation(outer[3:]) @ pose[:3], product(outer[3:], pose[3:])])
-    header = message.transforms[0].header
-    stamp = header.stamp.sec * 10**9 + header.stamp.nanosec
-    # Messages of static transforms may have older stamps.
-    if not track.stamps or stamp > track.stamps[-1]:
-        track.frame = frame
-        track.stamps.append(stamp)
-        track.rows.append([float(number) for number in pose])
+    return frame, pose
 
 
 def vectors(poses: Table) -> Table:

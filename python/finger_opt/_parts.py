@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tempfile
+import warnings
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
@@ -126,7 +127,7 @@ def import_parts(
         socket_body: The same for the socket.
         leave_out: Bodies of a STEP file to leave out, for example pins or a thread.
         like: Task from which grip force, friction, fingers, limits and strategy are copied.
-        resolution: Without effect: parts are exact within 0.02 mm.
+        resolution: Deprecated, without effect: parts are exact within 0.02 mm.
         body: Handle for a plug without faces to grip: width between the jaws, height, length, mm.
         depth_mm: Depth to be reached in a through hole, mm.
         tolerance_mm: Largest deviation of facets from the surfaces of a STEP file, mm.
@@ -136,6 +137,10 @@ def import_parts(
         InputError: A file cannot be used, or its shapes do not define a task.
         Interrupted: The import was cancelled by Ctrl-C.
     """
+    if resolution is not None:
+        warnings.warn("import_parts: resolution has no effect; leave it out", DeprecationWarning, stacklevel=3)
+    if not 1e-4 <= tolerance_mm <= 1:
+        raise InputError(f"tolerance_mm: {tolerance_mm} mm is out of range; it must be within 0.0001 to 1 mm")
     if (plug is None) == (assembly is None) or (socket is not None and assembly is not None):
         raise InputError("plug: give plug and socket, or assembly")
     files = [Path(file) for file in (assembly, plug, socket) if file is not None]
@@ -171,7 +176,7 @@ def import_parts(
         "plug_body": None if files[0] in steps else names[0],
         "socket_body": None if files[-1] in steps else names[1],
         "unit": unit, "insert_along": insert_along, "pose": pose, "jaws": jaws, "like": like, "engine": engine,
-        "resolution": resolution, "body": body, "depth_mm": depth_mm,
+        "body": body, "depth_mm": depth_mm,
         "names": (str(files[0]), str(files[-1])),
     }
     with tempfile.TemporaryDirectory() as folder:

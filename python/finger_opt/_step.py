@@ -77,8 +77,6 @@ def read(path: str | os.PathLike[str], tolerance_mm: float) -> list[Body]:
     A product with more than ``MAX_TRIANGLES``, for example a thread, is meshed more coarsely, with a warning.
     Raises InputError for a file that cannot be read or meshed.
     """
-    if not 1e-4 <= tolerance_mm <= 1:
-        raise InputError(f"tolerance_mm: {tolerance_mm} mm is out of range; it must be within 0.0001 to 1 mm")
     deadline = time.monotonic() + LIMIT_S
     products: dict[int, Body] = {}
     for scale in TOLERANCE_FACTORS:

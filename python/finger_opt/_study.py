@@ -19,6 +19,7 @@ from ._answer import Answer, Recommended
 from ._asked import Asked
 from ._call import called, checked, keywords, wrong
 from ._drawn import BLUE, COLOURS
+from ._map import Levers
 from ._plot import axes as axes_of, text
 from ._result import PICTURE, Found, Result
 from ._run import run_open
@@ -174,6 +175,26 @@ class Study(Asked):
     def plot_surface(self, ax: Drawing | None = None) -> Drawing:
         """Draws the infills, coloured by the objective; returns the axes."""
         return _surface(self, ax)
+
+    def plot_importances(self, ax: Drawing | None = None) -> Drawing:
+        """Draws the range of the recommended finger at both ends of each lever, the largest on top; returns the axes.
+
+        Raises :class:`InputError` if the folder has no levers of this finger.
+        """
+        return self._levers().plot(ax)
+
+    def _levers(self) -> Levers:
+        """Reads the levers of the recommended finger; raises InputError if there are none."""
+        try:
+            with open(os.path.join(self.path, "levers.json"), encoding="utf-8") as file:
+                stored: dict[str, Any] = json.load(file)
+            if self.best is not None and stored["design"] == self.best_params:
+                return Levers.from_json({**stored["found"], "sentence": _named(self)})
+        except (OSError, ValueError, KeyError):
+            pass
+        run = "call run() of a study of one task and objective, opened without no_levers"
+        raise wrong("study", f"{self.path} has no levers of its recommended finger; {run}, or "
+                             "finger_opt.sensitivity(task).plot() for Sobol indices")
 
     def __len__(self) -> int:
         """Returns the number of evaluations in the journal."""

@@ -167,10 +167,7 @@ def bag_to_csv(bag: StrPath, out: StrPath, **topics: str) -> None:
     unknown = set(topics) - {"force", "pose", "target"}
     if unknown:
         raise TypeError(f"bag_to_csv() has no keyword {min(unknown)!r}; it has force, pose and target")
-    try:
-        Path(out).write_text(text(bag, topics), encoding="utf-8")
-    except ValueError as error:
-        raise InputError(f"{os.fspath(bag)}: {error}") from error
+    Path(out).write_text(text(bag, topics), encoding="utf-8")
 
 
 class _WindowMeasurement:

@@ -91,8 +91,18 @@ def test_a_force_between_two_poses_has_the_pose_between_them(tmp_path: Path) -> 
     assert found[:, 1:4] == pytest.approx((PLACES[1:] + PLACES[:-1]) / 2.0, abs=1e-12)
 
 
-def test_a_force_in_the_tool_s_frame_is_turned_into_the_base_s(tmp_path: Path) -> None:
-    found = numbers(_bag.text(record(tmp_path / "bag", usual("tool0"))))
+@pytest.mark.parametrize("recorded", [False, True])
+def test_a_force_in_the_tool_s_frame_is_turned_into_the_base_s(tmp_path: Path, recorded: bool) -> None:
+    def messages():
+        for stamp, place, turned in zip(STAMPS, PLACES, QUATERNIONS):
+            yield "/tf", TF, stamp, T["TFMessage"]([transform(stamp, "base", "tool0", place, turned)])
+
+    bag = record(tmp_path / "bag", [*(messages() if recorded else ()), *usual("tool0")])
+    if recorded:
+        found = numbers(_bag.text(bag))
+    else:
+        with pytest.warns(UserWarning, match="bag: /ft/wrench is in tool0; assumed: .* pose is /tcp_pose"):
+            found = numbers(_bag.text(bag))
     angle, axis = 0.2, np.array([0.6, 0.0, 0.8])
     force = FORCES[-1]
     turned = (np.cos(angle) * force + np.sin(angle) * np.cross(axis, force)
@@ -119,6 +129,24 @@ def test_transforms_are_the_pose_of_the_tool_in_the_root_of_their_tree(tmp_path:
     assert found[:, 6] == pytest.approx(np.full(50, np.pi / 2.0))
 
 
+def test_a_force_in_a_frame_of_its_own_is_turned_by_the_transforms(tmp_path: Path) -> None:
+    half = [0.0, 0.0, np.sqrt(0.5), np.sqrt(0.5)]
+    # The sensor's x is the world's y, and that is the base's -x.
+    links = [transform(STAMPS[0], "world", "sensor", [1.0, 0.0, 0.0], half),
+             transform(STAMPS[0], "world", "base", [0.0, 0.0, 2.0], [0.0, 0.0, 1.0, 0.0])]
+    static = ("/tf_static", TF, STAMPS[0] - 1, T["TFMessage"](links))
+    found = numbers(_bag.text(record(tmp_path / "bag", [static, *usual("sensor")])))
+    expected = np.column_stack([FORCES[:, 1], -FORCES[:, 0], FORCES[:, 2]])
+    assert found[:, 7:10] == pytest.approx(expected, abs=1e-12)
+    assert (found[:, 1:4] == PLACES).all()
+
+
+def test_a_force_without_a_frame_is_assumed_in_that_of_the_pose(tmp_path: Path) -> None:
+    with pytest.warns(UserWarning, match="bag: /ft/wrench names no frame; assumed: that of /tcp_pose, base"):
+        found = numbers(_bag.text(record(tmp_path / "bag", usual(""))))
+    assert (found[:, 7:10] == FORCES).all()
+
+
 def changed(bag):
     for i, (topic, kind, stamp, message) in enumerate(usual()):
         if topic == "/tcp_pose" and i > 60:
@@ -130,6 +158,7 @@ def changed(bag):
     (lambda: (m for m in usual() if m[0] != "/ft/wrench"), "no topic of type WrenchStamped for the force"),
     (lambda: (m for m in usual() if m[0] != "/tcp_pose"), "no topic of type PoseStamped for the pose"),
     (lambda: ((f"/{i % 2}", *m[1:]) if m[1] == W else m for i, m in enumerate(usual())), "several topics for the force: /0, /1"),
+    (lambda: usual("sensor"), "/ft/wrench is in sensor, /tcp_pose in base, and no /tf relates them"),
     (lambda: changed(None), "/tcp_pose changes its frame from base to tool0"),
     (lambda: (m if m[1] != W else (m[0], W, m[2], wrench(STAMPS[0], FORCES[0])) for m in usual()), "does not increase"),
 ])
@@ -138,6 +167,20 @@ def test_what_cannot_be_a_log_is_refused_with_its_topic(tmp_path: Path, messages
     with pytest.raises(fo.InputError, match=words):
         bag_to_csv(bag, tmp_path / "log.csv")
     assert not (tmp_path / "log.csv").exists()
+
+
+def test_identify_names_what_is_wrong_with_a_recording(tmp_path: Path) -> None:
+    (tmp_path / "text.mcap").write_text("no recording")
+    record(tmp_path / "forceless", (m for m in usual() if m[0] != "/ft/wrench"))
+    record(tmp_path / "both", ((f"/{i % 2}", *m[1:]) if m[1] == W else m for i, m in enumerate(usual())))
+    words = {"text.mcap": "is not a ROS recording that rosbags can read", "forceless": "has no topic of type WrenchStamped",
+             "both": "has several topics for the force: /0, /1"}
+    for log, problem in words.items():
+        runs = tmp_path / "runs.csv"
+        runs.write_text(f"log,infill_density_percent,infill_direction_deg,offset_mm,outcome\n{log},20,10,0,inserted\n")
+        with pytest.raises(fo.InputError, match=f"{log}: {problem}") as refused:
+            fo.identify("usb", runs)
+        assert "pip install" not in str(refused.value)
 
 
 def test_topics_can_be_named(tmp_path: Path) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+
 import pytest
 
 import finger_opt as fo
@@ -45,7 +47,14 @@ def test_a_map_names_the_classes_with_their_numbers(fake, axes):
 
 
 def test_a_study_draws_its_course_and_its_designs(fake, tmp_path, axes):
-    study = fo.Study.create("usb", budget=8, out=tmp_path / "study", no_cache=True, **fake).run(progress=False)
+    study = fo.Study.create("usb", budget=8, out=tmp_path / "study", no_cache=True, no_levers=True, **fake)
+    study.run(progress=False)
+    with pytest.raises(fo.InputError, match="study has no levers of its recommended finger; call run()"):
+        study.plot_importances()
+    study = fo.load_study(study.path).run(progress=False)
+    names = [label.get_text() for label in study.plot_importances().get_yticklabels()]
+    stored = json.loads((tmp_path / "study" / "levers.json").read_text())["found"]["levers"]
+    assert len(names) == len(stored) > 1 and "tilt, °" in names and names[-1].startswith(stored[0]["name"])
     assert study.plot(axes) is axes and axes.has_data()
     assert study.plot_surface().get_xlabel() == "infill density, percent"
     assert study.answer._repr_html_() == study._repr_html_()

@@ -51,6 +51,14 @@ def test_meshes_are_imported_as_on_the_command_line(meshes, fake, tmp_path, comm
     assert shapes(task) == shapes(fo.Task.from_toml(tmp_path / "same.toml"))
 
 
+def test_values_that_meshes_do_not_need_are_checked_or_deprecated(meshes, fake, tmp_path):
+    for tolerance_mm in (-5, 0, float("nan")):
+        with pytest.raises(fo.InputError, match="tolerance_mm: .* within 0.0001 to 1 mm"):
+            imported(fake, tmp_path, *meshes, unit="mm", tolerance_mm=tolerance_mm)
+    with pytest.warns(DeprecationWarning, match="resolution has no effect"):
+        imported(fake, tmp_path, *meshes, unit="mm", resolution=5)
+
+
 @pytest.mark.parametrize(("unit", "schema"), [("mm", "AP214"), ("in", "AP242")])
 def test_step_gives_the_task_of_the_same_meshes(occ, parts, meshes, fake, tmp_path, unit, schema):
     for folder in ("mesh", "one", "two"):

@@ -88,7 +88,13 @@ impl Request {
             Frame::parse(&source.text, &source.file).map_err(Failure::input)
         });
         let frame = frame.transpose()?;
-        let runs = runs::read(&self.runs, frame.as_ref(), log_text).map_err(Failure::input)?;
+        let mut assumed = Vec::new();
+        let runs = runs::read(&self.runs, frame.as_ref(), |path| {
+            let (text, remarks) = log_text(path)?;
+            assumed.extend(remarks);
+            Ok(text)
+        });
+        let runs = runs.map_err(Failure::input)?;
         let identification = Identification {
             evaluator: &setup.evaluator,
             template,
@@ -100,6 +106,7 @@ impl Request {
         };
         let file = self.runs.to_string_lossy();
         let mut remarks = identification.remarks(&file).map_err(Failure::input)?;
+        remarks.extend(assumed);
         let found = identification.identify().map_err(Failure::input)?;
         not_stopped(stop)?;
         // Measured and simulated curves are shown even if no parameter is identified, but no cell is written.

@@ -21,9 +21,7 @@ const MAX_LISTED: usize = 12;
 const STEP: Format = Format {
     name: "a STEP file",
     extra: "step",
-    reader: "import warnings
-    from finger_opt import _step
-    warnings.formatwarning = lambda message, *rest: f'warning: {message}\\n'
+    reader: "from finger_opt import _step
     sys.stdout.write(_step.obj(_step.read(sys.argv[1], 0.01)))",
     otherwise: "or export STL",
 };

@@ -1,7 +1,7 @@
 //! Windows of the recommended finger as bars over the offset of the start: simulated, firm (all repeats insert),
 //! simulated with the stiffness computed from its ribs, and measured on a robot.
 
-use crate::answer::words::{design, end, ends_mm, interval, mm, on, span};
+use crate::answer::words::{design, ends_mm, interval, mm, on, span};
 use crate::answer::{
     Answer, MeasuredFinger, OnTask, Recommended, RobotWindow, Trust, Verdict, lines,
 };
@@ -143,8 +143,8 @@ fn bars(on: &str, rows: &[Bar]) -> Markup {
                 div.track {
                     (filled(parts, at))
                     @if let Some((_, [from, to])) = parts.first() {
-                        span.below style={ "right:" (percent(100.5 - at(*from))) } title=(end(ends[0])) { (outcome(ends[0])) }
-                        span.above style={ "left:" (percent(at(*to) + 0.5)) } title=(end(ends[1])) { (outcome(ends[1])) }
+                        span.below style={ "right:" (percent(100.5 - at(*from))) } { (explained(&outcome(ends[0]))) }
+                        span.above style={ "left:" (percent(at(*to) + 0.5)) } { (explained(&outcome(ends[1]))) }
                     }
                     b style={ "left:" (percent(at(0.0))) } {}
                 }

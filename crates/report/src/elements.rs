@@ -1,5 +1,6 @@
 //! Building blocks of the page's sections.
 
+use super::glossary::explained;
 use super::theme::{inline, variables};
 use maud::{DOCTYPE, Markup, PreEscaped, Render, html};
 
@@ -43,7 +44,7 @@ pub(super) fn data_url(svg: &str) -> String {
 /// Returns names and their values as a definition list.
 pub(super) fn definitions(pairs: &[(String, String)]) -> Markup {
     html! {
-        dl { @for (name, value) in pairs { dt { (name) } dd { (value) } } }
+        dl { @for (name, value) in pairs { dt { (explained(name)) } dd { (value) } } }
     }
 }
 

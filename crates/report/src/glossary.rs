@@ -1,9 +1,9 @@
-//! Terms of the first screen of the page, explained on hover and touch in the words of the guide.
+//! Terms of the page, explained on hover and touch in the words of the guide.
 
 use maud::{Markup, html};
 
-/// Terms, each with its explanation, which is also a passage of `docs/guide/start.md`.
-pub(crate) const TERMS: [(&str, &str); 5] = [
+/// Terms, each with its explanation, which is also a passage of `start.md` or `objectives.md` in `docs/guide`.
+pub(crate) const TERMS: [(&str, &str); 13] = [
     (
         "firm",
         "between the outermost starts that insert in all repeats, with friction, start and time step \
@@ -16,6 +16,28 @@ pub(crate) const TERMS: [(&str, &str); 5] = [
     ("from its ribs", "the window with springs computed from the ribs"),
     ("similar fingers", "fingers of similar stiffness on the publication's robot"),
     ("in repeats", "its repeated range"),
+    ("lost early (1)", "the fingers lost the plug during grasp, manipulation or approach"),
+    ("missed (2)", "at the end of the search, the plug's leading edge was not in the opening"),
+    ("jammed (3)", "the leading edge was in the opening, but the plug did not seat"),
+    ("lost (4)", "the fingers lost the plug during the search or the push"),
+    (
+        "Ties",
+        "designs whose firm range, measured or expected, is smaller by at most --indifference-mm",
+    ),
+    (
+        "peak force",
+        "largest contact force between plug and socket over the inserted trials of the window",
+    ),
+    (
+        "robust range",
+        "range under sampled errors: mean minus one standard deviation, or the mean of the lower \
+         tail",
+    ),
+    (
+        "remote centre",
+        "the point at which a force translates the fingertip without rotating it, and about which \
+         a moment rotates it",
+    ),
 ];
 
 /// Returns a text as HTML, with an explanation of each term.
@@ -47,7 +69,11 @@ mod tests {
 
     #[test]
     fn the_guide_has_the_same_explanations() {
-        let guide = include_str!("../../../docs/guide/start.md").replace('*', "").to_lowercase();
+        let pages = [
+            include_str!("../../../docs/guide/start.md"),
+            include_str!("../../../docs/guide/objectives.md"),
+        ];
+        let guide = pages.concat().replace(['*', '`'], "").to_lowercase();
         let guide = guide.split_whitespace().collect::<Vec<_>>().join(" ");
         for (term, tip) in TERMS {
             assert!(guide.contains(&tip.to_lowercase()), "{term}: {tip}");
@@ -55,6 +81,8 @@ mod tests {
         let shown = explained("simulated: firm -4.4 to +5.7 mm & more").into_string();
         assert!(shown.starts_with("simulated: <span class=\"term\""), "{shown}");
         assert!(shown.ends_with("&amp; more"), "{shown}");
+        let ends = explained("jammed (3), peak force").into_string();
+        assert_eq!(ends.matches("data-tip=\"").count(), 2, "{ends}");
         let plain = "simulated: -5.3 to +2.0 mm, not confirmed";
         assert_eq!(explained(plain).into_string(), plain);
     }

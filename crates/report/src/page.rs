@@ -1,6 +1,7 @@
 //! `report.html`: a page without external files, with inline scripts.
 
 use super::elements::{definitions, document, figure};
+use super::glossary::explained;
 use super::page_files::{PageFiles, PostAnalysis};
 use super::{
     ReportError, bench, convergence, explore, front, levers, map, overview, provenance, shape, ties,
@@ -25,7 +26,7 @@ pub fn page(answer: &Answer, model: &Model, files: &PageFiles) -> Result<String,
                 @for (id, title, _) in &sections { a href=(format!("#{id}")) { (title) } }
             }
             @for (id, title, body) in &sections {
-                section id=(id) { h2 { (title) } (body) }
+                section id=(id) { h2 { (explained(title)) } (body) }
             }
         }
     };

@@ -2,6 +2,7 @@
 
 use super::elements::{definitions, table};
 use crate::answer::{Answer, command, lines, words};
+use crate::glossary::explained;
 use insertion::evaluation::Evaluation;
 use insertion::evaluation::objective::Measure;
 use insertion::outcome::{FailureClass, Outcome};
@@ -36,7 +37,7 @@ pub(super) fn section(answer: &Answer, model: &Model) -> Markup {
     html! {
         details {
             summary { "How to read the numbers" }
-            ul { @for text in reading(answer, model) { li { (text) } } }
+            ul { @for text in reading(answer, model) { li { (explained(&text)) } } }
         }
         @if !more.is_empty() {
             details { summary { "More about the finger recommended by simulation" } (definitions(&more)) }

@@ -66,7 +66,7 @@ fn outcome(text: &str) -> Result<Option<Outcome>, String> {
 pub fn read(
     path: &Path,
     frame: Option<&Frame>,
-    text_of: impl Fn(&Path) -> Result<String, InputError>,
+    mut text_of: impl FnMut(&Path) -> Result<String, InputError>,
 ) -> Result<Vec<Run>, Problems> {
     let file = path.display().to_string();
     let text = files::read_text(path, LARGEST_INPUT)

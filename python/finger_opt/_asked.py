@@ -64,8 +64,8 @@ class Asked:
         Running the same command again continues the study. The name may be left out.
 
         Args:
-            task: ket8, ket12, rj45, usb, rj45_latch, usb_a, or the path of a task file; a study may have
-                several, separated by commas.
+            task: ket8, ket12, rj45, usb, rj45_latch, usb_a, or the path of a task file; several separated by
+                commas.
             space: Search space: infill, codesign, finger, or the path of a space file.
             robot: see `optimize robots`, or the path of a robot file [default: servo].
             cell: Your own cell: robot, friction and more, as `optimize identify` writes it.

@@ -103,8 +103,7 @@ def evaluate(
     7.2
 
     Args:
-        task: ket8, ket12, rj45, usb, rj45_latch, usb_a, or the path of a task file; a study may have
-            several, separated by commas.
+        task: ket8, ket12, rj45, usb, rj45_latch, usb_a, or the path of a task file.
         density: Infill density, percent.
         direction: Infill direction, degrees.
         space: Search space: infill, codesign, finger, or the path of a space file.
@@ -179,8 +178,7 @@ def trial(
     ('inserted', 3)
 
     Args:
-        task: ket8, ket12, rj45, usb, rj45_latch, usb_a, or the path of a task file; a study may have
-            several, separated by commas.
+        task: ket8, ket12, rj45, usb, rj45_latch, usb_a, or the path of a task file.
         density: Infill density, percent.
         direction: Infill direction, degrees.
         offset_mm: Shift of the start along y, mm.
@@ -252,8 +250,7 @@ def capture_map(
     points between two equal outcomes are filled in.
 
     Args:
-        task: ket8, ket12, rj45, usb, rj45_latch, usb_a, or the path of a task file; a study may have
-            several, separated by commas.
+        task: ket8, ket12, rj45, usb, rj45_latch, usb_a, or the path of a task file.
         density: Infill density, percent.
         direction: Infill direction, degrees.
         space: Search space: infill, codesign, finger, or the path of a space file.
@@ -368,8 +365,7 @@ def sensitivity(
     """Rank the inputs by their share of the variance: design, task, cell, as ``optimize sensitivity`` does.
 
     Args:
-        task: ket8, ket12, rj45, usb, rj45_latch, usb_a, or the path of a task file; a study may have
-            several, separated by commas.
+        task: ket8, ket12, rj45, usb, rj45_latch, usb_a, or the path of a task file.
         space: Search space: infill, codesign, finger, or the path of a space file.
         robot: see `optimize robots`, or the path of a robot file [default: servo].
         cell: Your own cell: robot, friction and more, as `optimize identify` writes it.
@@ -419,8 +415,7 @@ def levers(
     """Compare the infill with other ways to widen the window: tilt, strokes, grip, friction, robot, as ``optimize levers`` does.
 
     Args:
-        task: ket8, ket12, rj45, usb, rj45_latch, usb_a, or the path of a task file; a study may have
-            several, separated by commas.
+        task: ket8, ket12, rj45, usb, rj45_latch, usb_a, or the path of a task file.
         density: Infill density, percent.
         direction: Infill direction, degrees.
         space: Search space: infill, codesign, finger, or the path of a space file.
@@ -538,8 +533,7 @@ def identify(
     unchanged.
 
     Args:
-        task: ket8, ket12, rj45, usb, rj45_latch, usb_a, or the path of a task file; a study may have
-            several, separated by commas.
+        task: ket8, ket12, rj45, usb, rj45_latch, usb_a, or the path of a task file.
         runs: Table of the logs: log, infill_density_percent, infill_direction_deg, offset_mm, outcome.
         out: Write the cell, for cell, priors and uncertainty.
         space: Search space: infill, codesign, finger, or the path of a space file.
@@ -602,8 +596,8 @@ def next_print(
 
     Args:
         measurements: Bench measurements: published, or the path of a file.
-        task: ket8, ket12, rj45, usb, rj45_latch, usb_a, or the path of a task file; several separated by
-            commas [default: that of the measurements, if they are of one].
+        task: ket8, ket12, rj45, usb, rj45_latch, usb_a, or the path of a task file [default: that of the
+            measurements, if they are of one].
         space: Search space: infill, codesign, finger, or the path of a space file.
         robot: see `optimize robots`, or the path of a robot file [default: servo].
         cell: Your own cell: robot, friction and more, as `optimize identify` writes it.
@@ -683,8 +677,7 @@ def export_mjcf(
     command and close the jaws. MuJoCo is not needed for the export.
 
     Args:
-        task: ket8, ket12, rj45, usb, rj45_latch, usb_a, or the path of a task file; a study may have
-            several, separated by commas.
+        task: ket8, ket12, rj45, usb, rj45_latch, usb_a, or the path of a task file.
         density: Infill density, percent.
         direction: Infill direction, degrees.
         out: File to write.

@@ -10,6 +10,7 @@ use connector::mating::plugs;
 use connector::mesh::axes::{Along, Jaws, Unit, value};
 use connector::mesh::{Body, Files, Triangle, is_step, pick, read, shells};
 use input::units::MM;
+use insertion::task::is_of_name;
 use std::path::{Path, PathBuf};
 
 /// Largest mesh file, bytes.
@@ -93,16 +94,20 @@ impl PairRequest {
 
     /// Returns the file to write.
     pub fn out(&self) -> PathBuf {
-        self.out.clone().unwrap_or_else(|| {
-            let stem = self.plug().file_stem().unwrap_or_default();
-            PathBuf::from(stem).with_extension("toml")
-        })
+        let of_plug = || PathBuf::from(format!("{}.toml", name_of(self.plug())));
+        self.out.clone().unwrap_or_else(of_plug)
     }
 
     /// Returns the name of the task.
     pub fn name(&self) -> String {
-        self.out().file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default()
+        name_of(&self.out())
     }
+}
+
+/// Returns the name of a task that is called like a file, with - for what a name may not contain.
+fn name_of(file: &Path) -> String {
+    let stem = file.file_stem().unwrap_or_default().to_string_lossy();
+    stem.chars().map(|c| if is_of_name(c) { c } else { '-' }).collect()
 }
 
 /// Meshes of a plug and its socket.
@@ -226,4 +231,16 @@ fn joined(items: impl ExactSizeIterator<Item = String>) -> String {
     let more = items.len().saturating_sub(MAX_LISTED);
     let shown = items.take(MAX_LISTED).collect::<Vec<_>>().join(", ");
     if more > 0 { format!("{shown} and {more} more") } else { shown }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_task_is_called_like_the_file_of_a_maker() {
+        let name = name_of(Path::new("parts/USB-C plug v1.2 (JAE).STEP"));
+        assert_eq!(name, "USB-C-plug-v1-2--JAE-");
+        assert!(insertion::task::checked_name(&name).is_ok());
+    }
 }

@@ -14,6 +14,7 @@ use connector::tune::Tuned;
 use connector::write::{self, Notes};
 use input::shipped::Source;
 use input::units::MM;
+use insertion::task::checked_name;
 use insertion::trial::engine::EngineKind;
 use parameters::numbers;
 use serde_json::json;
@@ -36,7 +37,7 @@ const EXAMPLE: (&str, f64, &str) = ("8.25x2.4x6.65", 0.1, "12x6.5x20");
 )]
 pub struct Request {
     /// Name of the task: letters, digits, - and _
-    #[arg(value_name = "NAME")]
+    #[arg(value_name = "NAME", value_parser = checked_name)]
     pub name: String,
     /// Plug: width (y, between the jaws) x height (x) x length, mm
     #[arg(long, value_name = "WxHxL", requires = "clearance", group = "tip")]

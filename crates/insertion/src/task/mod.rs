@@ -14,6 +14,7 @@ mod rounded;
 pub use geometry::{Part, Solid};
 pub use latch::Latch;
 pub use mating_force::MatingForce;
+pub use raw::{checked_name, is_of_name};
 pub use raw_part::MAX_PARTS;
 pub use rounded::Rounded;
 

@@ -120,12 +120,25 @@ impl Task {
     }
 }
 
+/// Returns whether the name of a task may contain this character.
+pub fn is_of_name(c: char) -> bool {
+    c.is_ascii_alphanumeric() || c == '-' || c == '_'
+}
+
+/// Returns a name of a task.
+///
+/// # Errors
+/// If it is empty or contains another character than letters, digits, - and _.
+pub fn checked_name(name: &str) -> Result<String, &'static str> {
+    let is_name = !name.is_empty() && name.chars().all(is_of_name);
+    is_name.then(|| name.to_owned()).ok_or("must be letters, digits, - and _ only, as in \"usb\"")
+}
+
 /// Converts a task whose numbers have been checked by [`numbers::check_file`].
 fn convert(raw: RawTask, file: &str) -> Result<Task, InputError> {
     let (check, RawSocket { opening_x, opening_y, part }) = (Check { file }, raw.socket);
-    let plain = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
-    if raw.name.is_empty() || !raw.name.chars().all(plain) {
-        return check.fail("name", "must be letters, digits, - and _ only, as in \"usb\"");
+    if let Err(problem) = checked_name(&raw.name) {
+        return check.fail("name", problem);
     }
     if let (true, Some(PartsFile { file, .. })) = (part.is_empty(), &raw.parts) {
         return check.fail("parts.file", format!("{file} must lie beside the task file"));

@@ -76,8 +76,9 @@ fn settings(geometry: &Geometry) -> Vec<(&'static str, &'static str, String)> {
     // semicircles as high as a layer) divided by the pitch.
     let touching = geometry.finger.line_width / MM - LAYER * (1.0 - PI / 4.0);
     let density = touching / (geometry.lines.pitch / MM) * 100.0;
-    // Slicers measure the angle from X, counter-clockwise; the design from Y, clockwise.
-    let angle = (90.0 - geometry.design.direction_deg).rem_euclid(180.0);
+    // Slicers measure the angle from X, counter-clockwise; the design from Y, clockwise. Rounded, since 90 - 58.2 has
+    // 15 decimals in binary.
+    let angle = ((90.0 - geometry.design.direction_deg).rem_euclid(180.0) * 1e6).round() / 1e6;
     let [off, on] = ["0", "1"].map(|text| move || text.to_owned());
     vec![
         ("layer_height", "layer_height", LAYER.to_string()),

@@ -7,7 +7,7 @@ use crate::commands::levers::levers;
 use crate::commands::map::map_of;
 use crate::context::{Context, not_stopped};
 use crate::failure::Failure;
-use crate::progress::cost;
+use crate::progress::{Part, cost};
 use crate::setup::Setup;
 use crate::setup::files::robot;
 use crate::setup::robots::stiffness_and_lag;
@@ -100,11 +100,11 @@ impl Ended {
             (maps_missing, MAPPED.len() as f64 * cost::MAP),
             (robots_missing, cost::WALKED),
         ];
-        let costs = costs.iter().filter(|(missing, _)| *missing).map(|(_, cost)| cost);
-        if costs.clone().count() == 0 {
+        let cost: f64 = costs.iter().filter(|(missing, _)| *missing).map(|(_, cost)| cost).sum();
+        if cost == 0.0 {
             return Ok(found);
         }
-        context.begin(costs.sum());
+        context.begin(cost);
         let engine = &subject.provenance.engine.name;
         let setup = Setup::from_inputs(&record.inputs(dir)?, engine)?;
         let design = &subject.design;
@@ -125,6 +125,8 @@ impl Ended {
                 subject.write(dir, MAPS, &found.maps)?;
             }
             if robots_missing {
+                let what = "window with another robot".to_owned();
+                context.part(&Part { what, done: 0, of: 1, cost: 0.0 });
                 found.robots = robots(&setup, answer, scenario, stop)?;
                 subject.write(dir, ROBOTS, &found.robots)?;
             }

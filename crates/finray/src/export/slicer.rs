@@ -69,7 +69,7 @@ pub fn prusaslicer(geometry: &Geometry) -> String {
 /// Returns the settings: the key in PrusaSlicer, the key in OrcaSlicer and Bambu Studio, and the value. A key is empty
 /// if the program has no such setting. All three programs define angle and line spacing in the same way. The fill
 /// pattern is `alignedrectilinear`, since `rectilinear` turns by 90 degrees from layer to layer.
-fn settings(geometry: &Geometry) -> Vec<(&'static str, &'static str, String)> {
+pub(super) fn settings(geometry: &Geometry) -> Vec<(&'static str, &'static str, String)> {
     let (count, width) = walls(&geometry.finger);
     let (wall, line) = (mm(width), mm(geometry.finger.line_width));
     // Density at the design's pitch: the spacing of lines that touch (the sides of their cross-section are
@@ -106,12 +106,6 @@ fn settings(geometry: &Geometry) -> Vec<(&'static str, &'static str, String)> {
         ("infill_anchor", "infill_anchor", off()),
         ("infill_anchor_max", "infill_anchor_max", off()),
     ]
-}
-
-/// Returns the value of a setting by its key in PrusaSlicer; empty without such a setting.
-pub(super) fn setting(geometry: &Geometry, key: &str) -> String {
-    let found = settings(geometry).into_iter().find(|(prusaslicer, ..)| *prusaslicer == key);
-    found.map_or_else(String::new, |(.., value)| value)
 }
 
 /// Returns a 3MF file with outline and solid base and PrusaSlicer's settings for this object, which are read when

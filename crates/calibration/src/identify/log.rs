@@ -75,11 +75,10 @@ impl Log {
     /// If there are too few or too many, a number is not finite, time does not increase, or the log is too long.
     pub fn new(file: &str, samples: Vec<LogSample>) -> Result<Self, InputError> {
         let whole = |problem: String| Err(Place::file(file).fault(problem));
-        if !(MIN_SAMPLES..=MAX_SAMPLES).contains(&samples.len()) {
-            let count = samples.len();
-            return whole(format!(
-                "has {count} samples; it must have {MIN_SAMPLES} to {MAX_SAMPLES}"
-            ));
+        let count = samples.len();
+        if !(MIN_SAMPLES..=MAX_SAMPLES).contains(&count) {
+            let must = format!("it must have {MIN_SAMPLES} to {MAX_SAMPLES}");
+            return whole(format!("has {count} samples; {must}"));
         }
         for (i, sample) in samples.iter().enumerate() {
             let problem = match i.checked_sub(1).and_then(|before| samples.get(before)) {

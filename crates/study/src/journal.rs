@@ -87,12 +87,10 @@ impl Journal {
             return Err("was replaced by another file".to_owned());
         }
         let (bytes, written) = (found.len(), self.len);
-        if bytes != written {
-            return Err(format!(
-                "was changed by another program: it has {bytes} bytes, {written} were written"
-            ));
+        if bytes == written {
+            return Ok(());
         }
-        Ok(())
+        Err(format!("was changed by another program: it has {bytes} bytes, {written} were written"))
     }
 
     /// Appends encoded lines; they then survive a power failure.

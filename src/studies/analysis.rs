@@ -18,7 +18,6 @@ use analysis::levers::Levers;
 use analysis::map::Axes;
 use insertion::evaluation::Evaluation;
 use insertion::evaluation::evaluator::Scenario;
-use insertion::evaluation::robustness::Plan;
 use insertion::evaluation::tolerance::Search;
 use insertion::robot::Robot;
 use insertion::space::Design;
@@ -157,8 +156,7 @@ fn robots(
     let compliant = own.stiffness_n_per_mm.is_some_and(|[_, y, _]| y < COMPLIANT_N_PER_MM);
     let other = robot(if compliant { "ur5e_position" } else { "servo" })?;
     let scenario = &Scenario { robot: other, ..scenario.clone() };
-    let plan = &Plan::WINDOW;
-    let found = setup.evaluator.simulate_or_teach(scenario, Search::Walk, plan, stop);
+    let found = setup.evaluator.simulate_or_teach(scenario, Search::Walk, stop);
     let found = found.map_err(Failure::input)?;
     not_stopped(stop)?;
     Ok(vec![own, window_with(&scenario.robot, found)?])

@@ -8,7 +8,7 @@ use input::units::MM;
 use insertion::evaluation::evaluator::Scenario;
 use insertion::space::Design;
 use insertion::trial::engine::EngineKind;
-use insertion::trial::{Command, Grasp, Probe, Rig, Sample};
+use insertion::trial::{Grasp, Probe};
 use std::path::Path;
 use study::write_file;
 
@@ -41,7 +41,11 @@ pub fn write(
         let offsets = [None, Some(start), Some(negative + 0.2), Some(positive + 0.2)];
         for (i, offset_mm) in offsets.into_iter().enumerate() {
             let (samples, outcome) = match offset_mm {
-                None => (probe(&*rig, grasp)?, "probe".to_owned()),
+                None => {
+                    let probed = rig.probe(grasp, &Probe::DEFAULT, STEP_S);
+                    let none = || Failure::running("the engine simulates no probe");
+                    (probed.ok_or_else(none)?.1, "probe".to_owned())
+                }
                 Some(mm) => {
                     let (trial, samples) = rig.grasp(grasp).logged(mm * MM, STEP_S);
                     let class = trial.outcome.failure();
@@ -58,10 +62,4 @@ pub fn write(
     }
     write_file(&folder.join("frame.toml"), FRAME)?;
     Ok(write_file(&folder.join("runs.csv"), &runs)?)
-}
-
-fn probe(rig: &dyn Rig, grasp: Grasp<'_>) -> Result<Vec<Sample>, Failure> {
-    let found = rig.follow(grasp, Command::Probe(Probe::DEFAULT), STEP_S);
-    let samples = found.into_iter().next().map(|(_, samples)| samples);
-    samples.ok_or_else(|| Failure::running("the engine simulates no probe"))
 }

@@ -220,7 +220,7 @@ mod tests {
             let found = answer.recommended.as_ref().and_then(|found| found.ties.as_ref());
             crate::answer::lines::tied(&answer, found.unwrap()).1
         };
-        let narrow = "narrow: neighbours on the grid lose at least 1.9 mm";
+        let narrow = "narrow: evaluated neighbours lose at least 1.9 mm";
         assert_eq!(tied(0.3), format!("none of 10 designs within 0.3 mm; {narrow}"));
         let wide = tied(0.7);
         let region = "3 of 10 designs within 0.7 mm: 11 to 19 %, 1 to 16°";

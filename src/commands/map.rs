@@ -9,11 +9,11 @@ use crate::setup::Setup;
 use crate::setup::finger::{ChosenFinger, FingerRequest};
 use crate::setup::request::SetupRequest;
 use analysis::map::{Axes, CaptureMap, Plane};
-use clap::ValueEnum;
 use insertion::evaluation::OffsetStep;
 use insertion::evaluation::evaluator::Scenario;
 use insertion::space::Design;
 use insertion::trial::Grasp;
+use insertion::value_name;
 use parameters::plan::grid::MAX_TRIALS;
 use serde::Serialize;
 use std::path::PathBuf;
@@ -89,8 +89,7 @@ pub(crate) fn map_of(
     let rig = setup.evaluator.rig(scenario, taught, 1.0).map_err(Failure::input)?;
     let grasp = Grasp { stop: context.stop, ..Grasp::of(&scenario.finger) };
     let plane = Plane::new(&*rig, grasp, axes);
-    let axes = axes.to_possible_value();
-    let what = axes.map_or(String::new(), |axes| format!("trials of the map {}", axes.get_name()));
+    let what = format!("trials of the map {}", value_name(axes));
     let part = |[done, of]: [usize; 2], trials: usize| {
         let cost = cost::MAP * trials as f64 / MAX_TRIALS as f64;
         context.part(&Part { what: what.clone(), done, of, cost });

@@ -7,7 +7,7 @@ use crate::commands::levers::levers;
 use crate::commands::map::map_of;
 use crate::context::{Context, not_stopped};
 use crate::failure::Failure;
-use crate::progress::cost;
+use crate::progress::{Part, cost};
 use crate::setup::Setup;
 use crate::setup::files::robot;
 use crate::setup::robots::stiffness_and_lag;
@@ -18,7 +18,6 @@ use analysis::levers::Levers;
 use analysis::map::Axes;
 use insertion::evaluation::Evaluation;
 use insertion::evaluation::evaluator::Scenario;
-use insertion::evaluation::robustness::Plan;
 use insertion::evaluation::tolerance::Search;
 use insertion::robot::Robot;
 use insertion::space::Design;
@@ -100,11 +99,11 @@ impl Ended {
             (maps_missing, MAPPED.len() as f64 * cost::MAP),
             (robots_missing, cost::WALKED),
         ];
-        let costs = costs.iter().filter(|(missing, _)| *missing).map(|(_, cost)| cost);
-        if costs.clone().count() == 0 {
+        let cost: f64 = costs.iter().filter(|(missing, _)| *missing).map(|(_, cost)| cost).sum();
+        if cost == 0.0 {
             return Ok(found);
         }
-        context.begin(costs.sum());
+        context.begin(cost);
         let engine = &subject.provenance.engine.name;
         let setup = Setup::from_inputs(&record.inputs(dir)?, engine)?;
         let design = &subject.design;
@@ -125,6 +124,8 @@ impl Ended {
                 subject.write(dir, MAPS, &found.maps)?;
             }
             if robots_missing {
+                let what = "window with another robot".to_owned();
+                context.part(&Part { what, done: 0, of: 1, cost: 0.0 });
                 found.robots = robots(&setup, answer, scenario, stop)?;
                 subject.write(dir, ROBOTS, &found.robots)?;
             }
@@ -155,8 +156,7 @@ fn robots(
     let compliant = own.stiffness_n_per_mm.is_some_and(|[_, y, _]| y < COMPLIANT_N_PER_MM);
     let other = robot(if compliant { "ur5e_position" } else { "servo" })?;
     let scenario = &Scenario { robot: other, ..scenario.clone() };
-    let plan = &Plan::WINDOW;
-    let found = setup.evaluator.simulate_or_teach(scenario, Search::Walk, plan, stop);
+    let found = setup.evaluator.simulate_or_teach(scenario, Search::Walk, stop);
     let found = found.map_err(Failure::input)?;
     not_stopped(stop)?;
     Ok(vec![own, window_with(&scenario.robot, found)?])

@@ -99,30 +99,21 @@ pub fn advise(
     let mut printed: Vec<usize> = (0..known.len()).collect();
     // In closed form, as a study predicts them, so that both choose the same finger; without failed fingers, which
     // `predict` ignores.
-    let predicted = failed.is_empty().then(|| predict(bench, posterior, &all, IntervalKind::Truth));
-    let means = predicted.as_ref().map_or_else(
-        || given.means.clone(),
-        |predicted| predicted.iter().map(|range| range.mean_mm).collect(),
-    );
-    let span = |column: usize| match &predicted {
-        Some(predicted) => [predicted[column].low_mm, predicted[column].high_mm],
-        None => given.interval(column),
+    let closed_form = || predict(bench, posterior, &all, IntervalKind::Truth).into_iter();
+    let expected: Vec<[f64; 3]> = match failed.is_empty() {
+        true => closed_form().map(|range| [range.mean_mm, range.low_mm, range.high_mm]).collect(),
+        false => (0..all.len()).map(|column| given.expected(column)).collect(),
     };
     let best = |columns: &[usize]| {
         let first = columns.iter().rev().copied();
-        first.max_by(|&a, &b| means[a].total_cmp(&means[b]))
+        first.max_by(|&a, &b| expected[a][0].total_cmp(&expected[b][0]))
     };
-    let best_known_mm = best(&printed[..measured.len()]).map(|column| means[column]);
+    let best_known_mm = best(&printed[..measured.len()]).map(|column| expected[column][0]);
     let insert = (0..measured.len()).chain(known.len()..all.len());
     let choice = best(&insert.collect::<Vec<_>>()).map(|column| {
-        let [low_mm, high_mm] = span(column);
-        Choice {
-            design: designs[all[column]].clone(),
-            expected_mm: means[column].max(0.0),
-            low_mm,
-            high_mm,
-            measured: column < measured.len(),
-        }
+        let ([mean_mm, low_mm, high_mm], design) = (expected[column], designs[all[column]].clone());
+        let (expected_mm, measured) = (mean_mm.max(0.0), column < measured.len());
+        Choice { design, expected_mm, low_mm, high_mm, measured }
     });
     let mut next: Vec<Print> = Vec::new();
     let mut stop = true;
@@ -134,8 +125,8 @@ pub fn advise(
         let first = gains.iter().rev().max_by(|a, b| net(a).total_cmp(&net(b)));
         let Some(&Gain { column, choice_mm, .. }) = first else { break };
         stop &= !next.is_empty() || gains.iter().all(|gain| gain.choice_mm < cost_mm);
-        let [low_mm, high_mm] = given.interval(column);
-        let expected_mm = given.means[column].max(0.0);
+        let [mean_mm, low_mm, high_mm] = given.expected(column);
+        let expected_mm = mean_mm.max(0.0);
         let tried: Vec<StiffnessPoint> =
             printed.iter().map(|&column| bench.places[all[column]]).collect();
         let design = designs[all[column]].clone();
@@ -189,11 +180,12 @@ impl Ranges {
         Ranges { means, deviations, noise2 }
     }
 
-    /// Returns the 80 % interval of a finger's range, mm.
-    fn interval(&self, column: usize) -> [f64; 2] {
-        let values = sorted(self.deviations.iter().map(|draw| self.means[column] + draw[column]));
+    /// Returns mean and 80 % interval of a finger's range, mm.
+    fn expected(&self, column: usize) -> [f64; 3] {
+        let mean = self.means[column];
+        let values = sorted(self.deviations.iter().map(|draw| mean + draw[column]));
         let tail = |level: f64| quantile(&values, level).unwrap_or(0.0).max(0.0);
-        [tail((1.0 - INTERVAL) / 2.0), tail((1.0 + INTERVAL) / 2.0)]
+        [mean, tail((1.0 - INTERVAL) / 2.0), tail((1.0 + INTERVAL) / 2.0)]
     }
 
     /// Returns the increase of each finger's mean by a measurement one standard deviation above its own mean.

@@ -35,11 +35,9 @@ impl Verdict {
             (0, true, false) => format!(
                 "trust the order of these predictions, not their intervals, which contain only {inside}"
             ),
-            (0, false, _) => {
-                format!(
-                    "do not choose by these predictions: take the widest measured finger, or {identify}"
-                )
-            }
+            (0, false, _) => format!(
+                "do not choose by these predictions: take the widest measured finger, or {identify}"
+            ),
             (more, ..) => {
                 format!("do not rely on these predictions yet: measure {more} more, or {identify}")
             }

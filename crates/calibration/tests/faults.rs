@@ -1,6 +1,7 @@
 //! Logs of simulated cells with a fault each: the checks report its likely cause, and nothing for logs without a fault.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+use calibration::identify::curves::STEP_S;
 use calibration::identify::log::{Run, of_samples};
 use calibration::identify::question::Identification;
 use calibration::identify::read;
@@ -15,7 +16,7 @@ use insertion::outcome::Outcome;
 use insertion::robot::Robot;
 use insertion::space::Design;
 use insertion::trial::engine::EngineKind;
-use insertion::trial::{Command, Grasp, NEVER, Probe};
+use insertion::trial::{Grasp, NEVER, Probe};
 use insertion::{stiffness, surrogate};
 use rayon::prelude::*;
 
@@ -30,8 +31,6 @@ const HIDDEN: [(&str, &str); 5] = [
     ("radius of the edges", "edge_radius_mm"),
 ];
 
-/// Time between two samples, s.
-const EVERY_S: f64 = 2e-3;
 /// Mass below the force sensor, kg.
 const TOOL_KG: f64 = 1.0;
 
@@ -110,13 +109,9 @@ fn recorded(evaluator: &Evaluator, cell: u64) -> Vec<Recorded> {
         let starts = [mm("start"), mm("negative") + 0.2, mm("positive") + 0.2];
         for start in [None].into_iter().chain(starts.map(Some)) {
             let (outcome, samples) = match start {
-                None => {
-                    let probe =
-                        rig.follow(grasp, Command::Probe(Probe::DEFAULT), EVERY_S).remove(0);
-                    (None, probe.1)
-                }
+                None => (None, rig.probe(grasp, &Probe::DEFAULT, STEP_S).unwrap().1),
                 Some(mm) => {
-                    let (trial, samples) = rig.grasp(grasp).logged(mm * MM, EVERY_S);
+                    let (trial, samples) = rig.grasp(grasp).logged(mm * MM, STEP_S);
                     (Some(trial.outcome), samples)
                 }
             };

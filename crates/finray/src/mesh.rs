@@ -31,10 +31,7 @@ pub enum MeshError {
     #[error("the profile cannot be meshed: its edges cross or touch one another")]
     Crossing,
     /// Walls or gaps that need too many triangles.
-    #[error(
-        "the profile cannot be meshed: it needs more than {MAX_VERTICES} vertices: a wall or gap is \
-         too thin"
-    )]
+    #[error("the profile cannot be meshed: a wall or gap needs more than {MAX_VERTICES} vertices")]
     TooFine,
     /// Nodes that are not connected to the base.
     #[error("a part of the finger is not connected to its base")]

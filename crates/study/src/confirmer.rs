@@ -10,7 +10,6 @@ use ask_tell::Grid;
 use ask_tell::gp::{Advice, StoppingCriterion};
 use insertion::evaluation::Evaluation;
 use insertion::evaluation::evaluator::{Evaluate, Evaluator};
-use insertion::evaluation::robustness::Plan;
 use insertion::evaluation::robustness::firm::FirmResult;
 use insertion::evaluation::template::{DesignError, Template};
 use insertion::evaluation::tolerance::Search;
@@ -205,9 +204,8 @@ impl Confirmer<'_> {
 
     /// Evaluates a design with the stiffnesses computed from its ribs.
     fn computed(&self, evaluator: &Evaluator, design: &Design) -> ByRibs {
-        let (search, plan, stop) = (Search::default(), &Plan::WINDOW, self.walker.stop);
         let evaluations = evaluator.evaluate_by(design, |scenario| {
-            evaluator.simulate_or_teach(scenario, search, plan, stop)
+            evaluator.simulate_or_teach(scenario, Search::default(), self.walker.stop)
         });
         match evaluations {
             Ok(evaluations) => ByRibs::Measured(evaluations.tasks),

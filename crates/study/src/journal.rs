@@ -11,7 +11,7 @@ use super::provenance::Segment;
 use super::record::Recorded;
 use super::{header, line};
 use input::files::{self, LARGEST_JOURNAL};
-use std::fs::{self, File};
+use std::fs::{self, File, TryLockError};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
@@ -45,14 +45,19 @@ impl Journal {
     /// If another process has locked it, it is damaged, or it cannot be read or written.
     pub fn open(dir: &Path, config: &StudyConfig) -> Result<(Journal, Contents), StudyError> {
         let path = dir.join(JOURNAL_FILE);
-        let mut file = open_locked(&path).map_err(|error| match error.kind() {
-            io::ErrorKind::WouldBlock => {
-                StudyError::Locked { dir: dir.to_owned(), owner: UNKNOWN_OWNER.to_owned() }
-            }
-            _ => StudyError::io("open", &path)(error),
-        })?;
-        let bytes = files::read_up_to(&mut file.0, LARGEST_JOURNAL)
-            .map_err(StudyError::io("read", &path))?;
+        let file = File::options().read(true).append(true).create(true).open(&path);
+        let file = Lock(file.map_err(StudyError::io("open", &path))?);
+        // The folder's `.lock` may be removed. On other systems a lock would block readers.
+        if cfg!(unix) {
+            file.0.try_lock().map_err(|error| match error {
+                TryLockError::WouldBlock => {
+                    StudyError::Locked { dir: dir.to_owned(), owner: UNKNOWN_OWNER.to_owned() }
+                }
+                TryLockError::Error(error) => StudyError::io("lock", &path)(error),
+            })?;
+        }
+        let bytes =
+            files::read_up_to(&file.0, LARGEST_JOURNAL).map_err(StudyError::io("read", &path))?;
         let (contents, len) = parse(&bytes, &path, config)?;
         let mut journal = Journal { path, file, len, broken: false };
         if len < bytes.len() as u64 {
@@ -74,22 +79,18 @@ impl Journal {
     /// Checks that the path leads to the open file, and its length; the error is the change.
     fn unchanged(&self) -> Result<(), String> {
         let inaccessible = |error: io::Error| format!("is no longer accessible: {error}");
-        let found = match fs::symlink_metadata(&self.path) {
-            Err(error) if error.kind() == io::ErrorKind::NotFound => {
-                return Err("was removed or renamed".to_owned());
-            }
-            found => found.map_err(inaccessible)?,
-        };
+        let found = fs::symlink_metadata(&self.path).map_err(|error| match error.kind() {
+            io::ErrorKind::NotFound => "was removed or renamed".to_owned(),
+            _ => inaccessible(error),
+        })?;
         if !files::is_open_file(&found, &self.file.0).map_err(inaccessible)? {
             return Err("was replaced by another file".to_owned());
         }
         let (bytes, written) = (found.len(), self.len);
-        if bytes != written {
-            return Err(format!(
-                "was changed by another program: it has {bytes} bytes, {written} were written"
-            ));
+        if bytes == written {
+            return Ok(());
         }
-        Ok(())
+        Err(format!("was changed by another program: it has {bytes} bytes, {written} were written"))
     }
 
     /// Appends encoded lines; they then survive a power failure.
@@ -119,19 +120,6 @@ impl Journal {
     fn failed(&self, source: io::Error) -> StudyError {
         StudyError::Io { action: "write", path: self.path.clone(), source }
     }
-}
-
-/// Opens the file, or creates it, and locks it, since the folder's `.lock` may be removed.
-///
-/// # Errors
-/// [`io::ErrorKind::WouldBlock`] if another process has locked it.
-fn open_locked(path: &Path) -> io::Result<Lock> {
-    let file = File::options().read(true).append(true).create(true).open(path)?;
-    // On other systems a lock would block readers.
-    if cfg!(unix) {
-        file.try_lock()?;
-    }
-    Ok(Lock(file))
 }
 
 /// Reads a journal without writing to it; a torn last line is ignored, and a missing file counts as empty.

@@ -58,13 +58,10 @@ impl LeverAnalysis<'_> {
         }
         let infills = scenarios.len();
         let (candidates, left_out) = self.candidates(&mut scenarios)?;
-        let count = AtomicUsize::new(0);
-        let window = |scenario| {
-            let found = self.window(scenario, stop);
-            done([count.fetch_add(1, Ordering::Relaxed) + 1, scenarios.len()]);
-            found
-        };
-        let found = scenarios.par_iter().map(window).collect::<Result<Vec<_>, _>>()?;
+        let (count, of) = (AtomicUsize::new(0), scenarios.len());
+        let windows = scenarios.par_iter().map(|scenario| self.window(scenario, stop));
+        let windows = windows.inspect(|_| done([count.fetch_add(1, Ordering::Relaxed) + 1, of]));
+        let found = windows.collect::<Result<Vec<_>, _>>()?;
         let ranges: Vec<_> = found.iter().map(range_mm).collect();
         let base = Base {
             range_mm: ranges[0].unwrap_or(0.0),
@@ -86,7 +83,7 @@ impl LeverAnalysis<'_> {
             infill: infill.unwrap_or_else(over),
             levers,
             left_out,
-            windows: scenarios.len(),
+            windows: of,
         })
     }
 

@@ -7,6 +7,8 @@ use nalgebra::{UnitQuaternion, Vector3};
 
 /// Time between two points, s: 500 Hz.
 pub const STEP_S: f64 = 2e-3;
+/// Number of points on either side from which derivatives are computed.
+pub const REACH: usize = 2;
 /// Reduction of the target's speed from one point to the next, as a fraction of its maximum, that counts as a stop.
 const STOPPED: f64 = 0.25;
 
@@ -55,7 +57,7 @@ impl Curves {
             samples.iter().map(|sample| Vector3::from(of(sample)) * unit).collect::<Vec<_>>()
         };
         let tcp = vectors(|sample| sample.tcp_mm, MM);
-        let inertia = accelerations(&tcp).into_iter().map(|a| a * tool_mass);
+        let inertia = accelerations(&tcp, REACH).into_iter().map(|a| a * tool_mass);
         let force = vectors(|sample| sample.sensed_n, 1.0);
         Curves {
             force: force.into_iter().zip(inertia).map(|(force, inertia)| force - inertia).collect(),
@@ -112,19 +114,19 @@ fn between(a: &LogSample, b: &LogSample, time: f64) -> LogSample {
     }
 }
 
-/// Returns the first derivatives, by central differences over two steps on either side.
-pub fn rates(points: &[Vector3<f64>]) -> Vec<Vector3<f64>> {
+/// Returns the first derivatives, by central differences over `reach` steps on either side.
+pub fn rates(points: &[Vector3<f64>], reach: usize) -> Vec<Vector3<f64>> {
     let last = points.len().saturating_sub(1);
     let rate = |i: usize| {
-        let (a, b) = (i.saturating_sub(2), (i + 2).min(last));
+        let (a, b) = (i.saturating_sub(reach), (i + reach).min(last));
         (points[b] - points[a]) / ((b - a).max(1) as f64 * STEP_S)
     };
     (0..points.len()).map(rate).collect()
 }
 
-/// Returns the second derivatives.
-pub fn accelerations(points: &[Vector3<f64>]) -> Vec<Vector3<f64>> {
-    rates(&rates(points))
+/// Returns the second derivatives: twice the first ones.
+pub fn accelerations(points: &[Vector3<f64>], reach: usize) -> Vec<Vector3<f64>> {
+    rates(&rates(points, reach), reach)
 }
 
 /// Returns moving averages over `reach` points on either side.

@@ -1,6 +1,6 @@
 //! Closed-form estimates from the logs: stiffness of the robot, preload, friction.
 
-use super::curves::{self, Curves, STEP_S, accelerations, rates, smoothed};
+use super::curves::{self, Curves, REACH, STEP_S, accelerations, rates, smoothed};
 use ask_tell::statistics::{Moments, mean};
 use insertion::surrogate::Estimate;
 use nalgebra::{DMatrix, DVector, Vector3};
@@ -103,7 +103,7 @@ impl Sums {
         let tcp = smoothed(&smoothed(&one.tcp, HALF_WIDTH), HALF_WIDTH);
         let force = smoothed(&smoothed(&one.force, HALF_WIDTH), HALF_WIDTH);
         let behind: Vec<Vector3<f64>> = target.iter().zip(&tcp).map(|(to, at)| to - at).collect();
-        let (rate, acceleration) = (rates(&behind), accelerations(&tcp));
+        let (rate, acceleration) = (rates(&behind, REACH), accelerations(&tcp, REACH));
         let column = |values: &[Vector3<f64>], from: usize, sign: f64| {
             detrended(DVector::from_fn(count, |i, _| sign * values[i + from][axis]))
         };
@@ -194,7 +194,8 @@ const MIN_FRICTION_RELATIVE_SD: f64 = 0.04;
 /// Returns the friction from a probe along y; bias and drift of the force are estimated in the air before and after.
 pub fn friction(probe: &Curves) -> Option<Friction> {
     let moved = probe.target.as_ref().unwrap_or(&probe.tcp);
-    let speed: Vec<f64> = rates(&smoothed(moved, HALF_WIDTH)).iter().map(|rate| rate.y).collect();
+    let rates = rates(&smoothed(moved, HALF_WIDTH), REACH);
+    let speed: Vec<f64> = rates.iter().map(|rate| rate.y).collect();
     let fastest = speed.iter().map(|v| v.abs()).fold(0.0, f64::max);
     let moving = |i: usize| speed[i].abs() > MIN_SPEED * fastest;
     let force = undrifted(probe, moving)?;

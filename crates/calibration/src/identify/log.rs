@@ -1,6 +1,6 @@
 //! Log of one attempt or probe: commanded and measured TCP, and the force on the tool.
 
-use super::curves::STEP_S;
+use super::curves::accelerations;
 use ask_tell::normal::StandardNormal;
 use ask_tell::stream::stream;
 use input::units::{DEG, MM};
@@ -75,11 +75,10 @@ impl Log {
     /// If there are too few or too many, a number is not finite, time does not increase, or the log is too long.
     pub fn new(file: &str, samples: Vec<LogSample>) -> Result<Self, InputError> {
         let whole = |problem: String| Err(Place::file(file).fault(problem));
-        if !(MIN_SAMPLES..=MAX_SAMPLES).contains(&samples.len()) {
-            let count = samples.len();
-            return whole(format!(
-                "has {count} samples; it must have {MIN_SAMPLES} to {MAX_SAMPLES}"
-            ));
+        let count = samples.len();
+        if !(MIN_SAMPLES..=MAX_SAMPLES).contains(&count) {
+            let must = format!("it must have {MIN_SAMPLES} to {MAX_SAMPLES}");
+            return whole(format!("has {count} samples; {must}"));
         }
         for (i, sample) in samples.iter().enumerate() {
             let problem = match i.checked_sub(1).and_then(|before| samples.get(before)) {
@@ -127,30 +126,21 @@ impl Log {
         text
     }
 
-    /// Adds the errors of a force sensor to the log of a perfect one, from the random stream `number` of `seed`: bias,
-    /// drift, noise, and the inertial force of a tool below the sensor, kg.
+    /// Adds the errors of a force sensor to the log of a perfect one with points `STEP_S` apart, from the random stream
+    /// `number` of `seed`: bias, drift, noise, and the inertial force of a tool below the sensor, kg.
     pub fn add_sensor_errors(&mut self, tool_mass: f64, seed: u64, number: u64) {
         let mut random = stream(seed, number, "sensor");
         let mut normal =
             |sd: f64| Vector3::from_fn(|_, _| sd * random.sample::<f64, _>(StandardNormal));
         let (bias, drift) = (normal(BIAS_N), normal(DRIFT_N));
-        let positions = self.samples.iter().map(|sample| sample.tcp.position).collect();
-        let accelerations = rates(rates(positions));
+        let positions: Vec<_> = self.samples.iter().map(|sample| sample.tcp.position).collect();
+        let accelerations = accelerations(&positions, 1);
         let last = (accelerations.len() - 1) as f64;
         for (i, LogSample { force, .. }) in self.samples.iter_mut().enumerate() {
             let part = i as f64 / last;
             *force += bias + part * drift + normal(NOISE_N) - tool_mass * accelerations[i];
         }
     }
-}
-
-/// Returns the time derivatives of points `STEP_S` apart, by central differences, one-sided at both ends.
-fn rates(points: Vec<Vector3<f64>>) -> Vec<Vector3<f64>> {
-    let rate = |i: usize| {
-        let (a, b) = (i.saturating_sub(1), (i + 1).min(points.len() - 1));
-        (points[b] - points[a]) / ((b - a) as f64 * STEP_S)
-    };
-    (0..points.len()).map(rate).collect()
 }
 
 impl LogSample {

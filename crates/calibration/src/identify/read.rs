@@ -50,9 +50,8 @@ pub fn parse(text: &str, file: &str, frame: Option<&Frame>) -> Result<Log, Input
     let mut samples: Vec<LogSample> = Vec::new();
     for (at, line) in lines.filter(|(_, line)| !ignored(line)) {
         if samples.len() == MAX_SAMPLES {
-            return Err(whole(format!(
-                "has more than {MAX_SAMPLES} samples; cut it to the attempt"
-            )));
+            let problem = format!("has more than {MAX_SAMPLES} samples; cut it to the attempt");
+            return Err(whole(problem));
         }
         let mut sample = table.sample(at + 1, line).map_err(|problem| fault(at, problem))?;
         if let (None, Some(target)) = (table.rtde, &mut sample.target) {

@@ -12,7 +12,7 @@ use insertion::evaluation::template::DesignError;
 use insertion::outcome::Outcome;
 use insertion::robot::Robot;
 use insertion::space::Design;
-use insertion::trial::{Command, Grasp, Trajectory};
+use insertion::trial::{Grasp, Trajectory};
 use nalgebra::Vector3;
 use parameters::Parameter;
 use std::ops::Range;
@@ -165,7 +165,7 @@ impl Identification<'_> {
             let rig = evaluator.rig(&scenario, None, step_factor)?;
             let grasp = Grasp { stop: self.stop, ..Grasp::of(&scenario.finger) };
             let trajectories: Vec<_> = alike.iter().map(|logged| &logged.trajectory).collect();
-            let followed = rig.follow(grasp, Command::Trajectories(&trajectories), STEP_S);
+            let followed = rig.follow(grasp, &trajectories, STEP_S);
             all.extend(followed.into_iter().map(|(trial, samples)| {
                 (Curves::of_samples(&samples, self.tool_mass), trial.outcome)
             }));

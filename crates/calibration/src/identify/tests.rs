@@ -13,7 +13,7 @@ use insertion::robot::Robot;
 use insertion::space::Design;
 use insertion::task::Task;
 use insertion::trial::engine::EngineKind;
-use insertion::trial::{Command, Grasp, Tcp};
+use insertion::trial::{Grasp, Tcp};
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 
 fn usb() -> Task {
@@ -258,8 +258,7 @@ fn an_attempt_along_its_own_path_is_the_same_attempt() {
         let trajectory = measured.trajectory().unwrap();
         let push = trajectory.push_start();
         assert!(push > 0.1 && push < trajectory.duration(), "{push}");
-        let all = [&trajectory];
-        let mut followed = rig.follow(Grasp::of(&finger), Command::Trajectories(&all), STEP_S);
+        let mut followed = rig.follow(Grasp::of(&finger), &[&trajectory], STEP_S);
         let (again, samples) = followed.remove(0);
         assert_eq!(again.outcome, trial.outcome);
         let replayed = Curves::of_samples(&samples, 0.0);

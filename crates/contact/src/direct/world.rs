@@ -161,9 +161,7 @@ impl DirectWorld {
             force.net += contact.impulse.xyz() * per_step;
             force.normal_sum += contact.impulse.dot(&contact.normal) * per_step;
         }
-        let (Some(axial), Some(joint)) = (&self.axial_friction, self.joints.last()) else {
-            return;
-        };
+        let (Some(axial), Some(joint)) = (&self.axial_friction, self.joints.last()) else { return };
         let net = joint.friction(&self.bodies);
         for (pair, force) in self.pairs.iter().zip(&mut self.forces) {
             force.net += net * pair.sign(axial.parent, axial.child).unwrap_or(0.0);

@@ -1,7 +1,7 @@
 //! Print sheet: one page on how to print a finger and how to check the print.
 
 use super::profile::profile;
-use super::slicer::setting;
+use super::slicer::settings;
 use super::{mm, title};
 use crate::geometry::Geometry;
 use crate::holes::{Block, Direction};
@@ -216,7 +216,8 @@ fn finger_rows(geometry: &Geometry) -> Vec<(&'static str, String)> {
 }
 
 fn print_rows(geometry: &Geometry) -> Vec<(&'static str, String)> {
-    let set = |key| setting(geometry, key);
+    let settings = settings(geometry);
+    let set = |key| settings.iter().find(|(of, ..)| *of == key).map_or("", |(.., value)| value);
     let [line, layer] = ["extrusion_width", "layer_height"].map(set);
     let [walls, wall] = ["perimeters", "perimeter_extrusion_width"].map(set);
     let [density, angle] = ["fill_density", "fill_angle"].map(set);

@@ -69,15 +69,16 @@ pub fn prusaslicer(geometry: &Geometry) -> String {
 /// Returns the settings: the key in PrusaSlicer, the key in OrcaSlicer and Bambu Studio, and the value. A key is empty
 /// if the program has no such setting. All three programs define angle and line spacing in the same way. The fill
 /// pattern is `alignedrectilinear`, since `rectilinear` turns by 90 degrees from layer to layer.
-fn settings(geometry: &Geometry) -> Vec<(&'static str, &'static str, String)> {
+pub(super) fn settings(geometry: &Geometry) -> Vec<(&'static str, &'static str, String)> {
     let (count, width) = walls(&geometry.finger);
     let (wall, line) = (mm(width), mm(geometry.finger.line_width));
     // Density at the design's pitch: the spacing of lines that touch (the sides of their cross-section are
     // semicircles as high as a layer) divided by the pitch.
     let touching = geometry.finger.line_width / MM - LAYER * (1.0 - PI / 4.0);
     let density = touching / (geometry.lines.pitch / MM) * 100.0;
-    // Slicers measure the angle from X, counter-clockwise; the design from Y, clockwise.
-    let angle = (90.0 - geometry.design.direction_deg).rem_euclid(180.0);
+    // Slicers measure the angle from X, counter-clockwise; the design from Y, clockwise. Rounded, since 90 - 58.2 has
+    // 15 decimals in binary.
+    let angle = ((90.0 - geometry.design.direction_deg).rem_euclid(180.0) * 1e6).round() / 1e6;
     let [off, on] = ["0", "1"].map(|text| move || text.to_owned());
     vec![
         ("layer_height", "layer_height", LAYER.to_string()),
@@ -105,12 +106,6 @@ fn settings(geometry: &Geometry) -> Vec<(&'static str, &'static str, String)> {
         ("infill_anchor", "infill_anchor", off()),
         ("infill_anchor_max", "infill_anchor_max", off()),
     ]
-}
-
-/// Returns the value of a setting by its key in PrusaSlicer; empty without such a setting.
-pub(super) fn setting(geometry: &Geometry, key: &str) -> String {
-    let found = settings(geometry).into_iter().find(|(prusaslicer, ..)| *prusaslicer == key);
-    found.map_or_else(String::new, |(.., value)| value)
 }
 
 /// Returns a 3MF file with outline and solid base and PrusaSlicer's settings for this object, which are read when

@@ -51,6 +51,13 @@ fn a_modulus_in_other_units_is_asked_about() {
     assert!(error.contains("units look wrong") && error.contains("modulus_gpa"), "{error}");
 }
 
+/// The print sheet has room for two decimals.
+#[test]
+fn the_angle_of_a_slicer_has_no_more_digits_than_that_of_the_design() {
+    let settings = crate::export::slicer::prusaslicer(&infill(20.0, 58.2));
+    assert!(settings.contains("\nfill_angle = 31.8\n"), "{settings}");
+}
+
 /// A finger without stiffness has a mesh, which the message must not blame.
 #[test]
 fn an_error_of_the_stiffness_does_not_name_the_mesh() {

@@ -212,21 +212,20 @@ impl Evaluator {
         Ok(Evaluation { taught, ..evaluation })
     }
 
-    /// Simulates a scenario, with a taught start if the nominal start fails.
+    /// Simulates the window of a scenario, with a taught start if the nominal start fails.
     pub fn simulate_or_teach(
         &self,
         scenario: &Scenario,
         search: Search,
-        plan: &Plan,
         stop: &AtomicBool,
     ) -> Result<Evaluation, DesignError> {
-        let evaluation = self.simulate(scenario, search, plan, stop)?;
+        let evaluation = self.simulate(scenario, search, &Plan::WINDOW, stop)?;
         if evaluation.window.nominal == Outcome::Inserted {
             return Ok(evaluation);
         }
         let mut taught = scenario.clone();
         taught.task.strategy.rule = StartRule::Taught;
-        self.simulate(&taught, search, plan, stop)
+        self.simulate(&taught, search, &Plan::WINDOW, stop)
     }
 
     /// Measures the [firm window](firm) of a scenario by [`firm::REPEATS`] repeats; `measured` has its window. The

@@ -105,15 +105,6 @@ impl Grasp<'static> {
     }
 }
 
-/// Command that replaces the strategy of the task.
-#[derive(Debug, Clone, Copy)]
-pub enum Command<'a> {
-    /// Commanded trajectories, task frame, all from the same grasp.
-    Trajectories(&'a [&'a Trajectory]),
-    /// Friction probe on a flat plate that replaces the socket, with its top at z = 0.
-    Probe(Probe),
-}
-
 /// A trial and its samples.
 pub type Followed = (Trial, Vec<Sample>);
 
@@ -128,10 +119,16 @@ pub trait Rig: Send + Sync {
         None
     }
 
-    /// Returns the trials of a grasp under a command, sampled every `every_s` seconds from its start: one for
-    /// each trajectory or probe; empty if the rig does not simulate.
-    fn follow(&self, _grasp: Grasp<'_>, _command: Command<'_>, _every_s: f64) -> Vec<Followed> {
+    /// Returns the trials along commanded trajectories (task frame) from the same grasp, in place of the strategy,
+    /// sampled every `every_s` seconds; empty if the rig does not simulate.
+    fn follow(&self, _grasp: Grasp<'_>, _each: &[&Trajectory], _every_s: f64) -> Vec<Followed> {
         Vec::new()
+    }
+
+    /// Returns the trial of a friction probe on a flat plate that replaces the socket, with its top at z = 0, sampled
+    /// every `every_s` seconds; `None` if the rig does not simulate.
+    fn probe(&self, _grasp: Grasp<'_>, _probe: &Probe, _every_s: f64) -> Option<Followed> {
+        None
     }
 
     /// Returns a trial of these fingers whose moves the caller commands; `None` if the rig does not simulate.

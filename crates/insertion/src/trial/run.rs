@@ -3,7 +3,7 @@
 use super::attempt::driven::Driven;
 use super::attempt::{Attempt, Stop};
 use super::record::{Frame, Recorder, Trace};
-use super::{Command, Followed, Grasp, Grasped, Recording, Rig, Trial, cell};
+use super::{Followed, Grasp, Grasped, Probe, Recording, Rig, Trajectory, Trial, cell};
 use crate::finger::Finger;
 use crate::outcome::Outcome;
 use crate::robot::{MountedRobot, Robot};
@@ -101,25 +101,22 @@ impl Rig for EngineRig {
         Some(Recording::new(trial, frames))
     }
 
-    fn follow(&self, grasp: Grasp<'_>, command: Command<'_>, every_s: f64) -> Vec<Followed> {
-        let attempt = |task: &Task| Attempt::new(&self.robot, task, &*self.engine, grasp);
-        match command {
-            Command::Trajectories(trajectories) => {
-                let mut held = attempt(&self.task);
-                let grasped = held.grasp();
-                let each = trajectories.iter().map(|trajectory| {
-                    let mut attempt = held.clone();
-                    let end = grasped.and_then(|()| attempt.follow(trajectory, every_s));
-                    attempt.result(end).0
-                });
-                each.collect()
-            }
-            Command::Probe(probe) => {
-                let mut attempt = attempt(&on_plate(&self.task));
-                let end = attempt.grasp().and_then(|()| attempt.probe(&probe, every_s));
-                vec![attempt.result(end).0]
-            }
-        }
+    fn follow(&self, grasp: Grasp<'_>, each: &[&Trajectory], every_s: f64) -> Vec<Followed> {
+        let mut held = Attempt::new(&self.robot, &self.task, &*self.engine, grasp);
+        let grasped = held.grasp();
+        let followed = each.iter().map(|trajectory| {
+            let mut attempt = held.clone();
+            let end = grasped.and_then(|()| attempt.follow(trajectory, every_s));
+            attempt.result(end).0
+        });
+        followed.collect()
+    }
+
+    fn probe(&self, grasp: Grasp<'_>, probe: &Probe, every_s: f64) -> Option<Followed> {
+        let task = on_plate(&self.task);
+        let mut attempt = Attempt::new(&self.robot, &task, &*self.engine, grasp);
+        let end = attempt.grasp().and_then(|()| attempt.probe(probe, every_s));
+        Some(attempt.result(end).0)
     }
 
     fn driven(&self, finger: &Finger) -> Option<Driven> {

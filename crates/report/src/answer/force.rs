@@ -40,15 +40,11 @@ impl ExcessForce {
     /// 150 N at which the robot ur5e stops`.
     pub fn words(&self, robot: &str) -> String {
         let ExcessForce { task, peak_force_n, limit_n, of_connector } = self;
-        let limit = match of_connector {
-            true => format!("its connector withstands {limit_n:.0} N (limits.force_n)"),
-            false => {
-                let above = match peak_force_n > limit_n {
-                    true => "above".to_owned(),
-                    false => format!("more than {:.0} % of", 100.0 * STOP_SHARE),
-                };
-                format!("{above} the {limit_n:.0} N at which the robot {robot} stops")
-            }
+        let stop = format!("the {limit_n:.0} N at which the robot {robot} stops");
+        let limit = match (of_connector, peak_force_n > limit_n) {
+            (true, _) => format!("its connector withstands {limit_n:.0} N (limits.force_n)"),
+            (false, true) => format!("above {stop}"),
+            (false, false) => format!("more than {:.0} % of {stop}", 100.0 * STOP_SHARE),
         };
         format!("up to {peak_force_n:.0} N on {task}: {limit}")
     }

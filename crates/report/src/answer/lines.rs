@@ -176,7 +176,7 @@ pub fn tied(answer: &Answer, ties: &Ties) -> Line {
     let matters = in_mm && !matches!(answer.verdict, Verdict::Any { .. });
     let narrow = ties.narrow.filter(|_| matters).map(|(steps, loss)| {
         let nearest = match steps {
-            1 => "narrow: neighbours on the grid".to_owned(),
+            1 => "narrow: evaluated neighbours".to_owned(),
             _ => format!("the nearest others, {steps} steps away,"),
         };
         format!("{nearest} lose at least {}", mm(loss))

@@ -103,12 +103,9 @@ impl<'a> Answer<'a> {
 
     /// Returns the first sentence of the answer, with the number of evaluations of an unfinished study.
     pub fn headline(&self) -> String {
-        let (record, headline) = (self.record, self.verdict.headline());
-        let done = record.config.counted(record.evaluations.len());
-        match record.unfinished() {
-            true => format!("{headline} (unfinished, after {done})"),
-            false => headline,
-        }
+        let StudyRecord { config, evaluations, .. } = self.record;
+        let done = || format!(" (unfinished, after {})", config.counted(evaluations.len()));
+        self.verdict.headline() + &self.record.unfinished().then(done).unwrap_or_default()
     }
 
     /// Returns the evaluation of the design to print according to simulation alone; `None` if there is none.

@@ -153,14 +153,12 @@ fn spread<'a>(record: &'a StudyRecord, designs: &[(&Recorded, f64)]) -> Vec<Spre
 
 /// Returns the largest loss of the designs that do not tie, but whose parameters are within the spread of those that do.
 fn loss_within(spread: &[Spread], others: &[(&Recorded, f64)]) -> Option<f64> {
-    let inside = |found: &Recorded| {
-        let is_within = |Spread { key, values: [low, high] }: &Spread| {
+    let is_inside = |(found, _): &&(&Recorded, f64)| {
+        spread.iter().all(|Spread { key, values: [low, high] }| {
             found.design.get(key).is_some_and(|value| (*low..=*high).contains(&value))
-        };
-        spread.iter().all(is_within)
+        })
     };
-    let within = others.iter().filter(|(found, _)| inside(found));
-    within.map(|(_, loss)| *loss).reduce(f64::max)
+    others.iter().filter(is_inside).map(|(_, loss)| *loss).reduce(f64::max)
 }
 
 /// Returns [`Ties::narrow`], given the losses against the evaluation `index`.
@@ -222,7 +220,7 @@ mod tests {
             let found = answer.recommended.as_ref().and_then(|found| found.ties.as_ref());
             crate::answer::lines::tied(&answer, found.unwrap()).1
         };
-        let narrow = "narrow: neighbours on the grid lose at least 1.9 mm";
+        let narrow = "narrow: evaluated neighbours lose at least 1.9 mm";
         assert_eq!(tied(0.3), format!("none of 10 designs within 0.3 mm; {narrow}"));
         let wide = tied(0.7);
         let region = "3 of 10 designs within 0.7 mm: 11 to 19 %, 1 to 16°";

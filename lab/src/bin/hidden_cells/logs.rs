@@ -1,20 +1,19 @@
 //! Simulated logs of attempts in hidden cells, with the errors of a real force sensor.
 
 use super::cell::{FingerWindows, HiddenCell};
+use calibration::identify::curves::STEP_S;
 use calibration::identify::log::of_samples;
 use finger_opt::failure::Failure;
 use input::units::MM;
 use insertion::evaluation::evaluator::Scenario;
 use insertion::space::Design;
 use insertion::trial::engine::EngineKind;
-use insertion::trial::{Command, Grasp, Probe, Rig, Sample};
+use insertion::trial::{Grasp, Probe};
 use std::path::Path;
 use study::write_file;
 
 /// Infills of the logged fingers, percent and degrees.
 pub const LOGGED: [[f64; 2]; 2] = [[10.0, 0.0], [30.0, 0.0]];
-/// Time between two samples, s.
-const EVERY_S: f64 = 2e-3;
 /// Mass of the tool on the sensor, kg.
 const TOOL_KG: f64 = 1.0;
 /// Text of `frame.toml`: no rotation, since the logs are in the task's frame already, and the mass of the tool.
@@ -42,9 +41,13 @@ pub fn write(
         let offsets = [None, Some(start), Some(negative + 0.2), Some(positive + 0.2)];
         for (i, offset_mm) in offsets.into_iter().enumerate() {
             let (samples, outcome) = match offset_mm {
-                None => (probe(&*rig, grasp)?, "probe".to_owned()),
+                None => {
+                    let probed = rig.probe(grasp, &Probe::DEFAULT, STEP_S);
+                    let none = || Failure::running("the engine simulates no probe");
+                    (probed.ok_or_else(none)?.1, "probe".to_owned())
+                }
                 Some(mm) => {
-                    let (trial, samples) = rig.grasp(grasp).logged(mm * MM, EVERY_S);
+                    let (trial, samples) = rig.grasp(grasp).logged(mm * MM, STEP_S);
                     let class = trial.outcome.failure();
                     (samples, class.map_or("inserted".to_owned(), |class| class.to_string()))
                 }
@@ -59,10 +62,4 @@ pub fn write(
     }
     write_file(&folder.join("frame.toml"), FRAME)?;
     Ok(write_file(&folder.join("runs.csv"), &runs)?)
-}
-
-fn probe(rig: &dyn Rig, grasp: Grasp<'_>) -> Result<Vec<Sample>, Failure> {
-    let found = rig.follow(grasp, Command::Probe(Probe::DEFAULT), EVERY_S);
-    let samples = found.into_iter().next().map(|(_, samples)| samples);
-    samples.ok_or_else(|| Failure::running("the engine simulates no probe"))
 }

@@ -95,16 +95,12 @@ impl Ended {
         let levers_missing = found.levers.is_none() && !self.run.no_levers;
         let maps_missing = found.maps.is_empty() && !self.run.no_map;
         let robots_missing = found.robots.is_empty() && own_task(record);
-        let costs = [
-            (levers_missing, cost::LEVERS),
-            (maps_missing, MAPPED.len() as f64 * cost::MAP),
-            (robots_missing, cost::WALKED),
-        ];
-        let costs = costs.iter().filter(|(missing, _)| *missing).map(|(_, cost)| cost);
-        if costs.clone().count() == 0 {
+        if !levers_missing && !maps_missing && !robots_missing {
             return Ok(found);
         }
-        context.begin(costs.sum());
+        let maps = MAPPED.len() as f64 * cost::MAP;
+        let cost = f64::from(levers_missing) * cost::LEVERS + f64::from(maps_missing) * maps;
+        context.begin(cost + f64::from(robots_missing) * cost::WALKED);
         let engine = &subject.provenance.engine.name;
         let setup = Setup::from_inputs(&record.inputs(dir)?, engine)?;
         let design = &subject.design;

@@ -4,12 +4,11 @@ use crate::command::{self, Output};
 use crate::context::Context;
 use crate::failure::Failure;
 use crate::layout;
-use crate::progress::{Part, cost};
+use crate::progress::cost;
 use crate::setup::Setup;
 use crate::setup::finger::{ChosenFinger, FingerRequest};
 use crate::setup::request::SetupRequest;
 use analysis::map::{Axes, CaptureMap, Plane};
-use clap::ValueEnum;
 use insertion::evaluation::OffsetStep;
 use insertion::evaluation::evaluator::Scenario;
 use insertion::space::Design;
@@ -89,11 +88,9 @@ pub(crate) fn map_of(
     let rig = setup.evaluator.rig(scenario, taught, 1.0).map_err(Failure::input)?;
     let grasp = Grasp { stop: context.stop, ..Grasp::of(&scenario.finger) };
     let plane = Plane::new(&*rig, grasp, axes);
-    let axes = axes.to_possible_value();
-    let what = axes.map_or(String::new(), |axes| format!("trials of the map {}", axes.get_name()));
-    let part = |[done, of]: [usize; 2], trials: usize| {
-        let cost = cost::MAP * trials as f64 / MAX_TRIALS as f64;
-        context.part(&Part { what: what.clone(), done, of, cost });
+    let what = format!("trials of the map {}", insertion::value_name(axes));
+    let part = |done_of, trials: usize| {
+        context.part(&what, done_of, cost::MAP * trials as f64 / MAX_TRIALS as f64);
     };
     let count = AtomicUsize::new(0);
     let done = || {

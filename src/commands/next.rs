@@ -120,7 +120,7 @@ impl command::Request for Request {
         let mut random = stream(settings.seed, 0, "next");
         let (count, cost_mm) = (usize::from(self.count), self.print_cost_mm);
         let advice = advise(bench, &posterior, fingers, count, cost_mm, &mut random);
-        let done = |[done, of]: [usize; 2]| context.part(&folds(done, of));
+        let done = folds(context);
         let (settings, dimension) = (Settings { done: &done, ..settings }, layout.dimension());
         let left_out = leave_one_out((&benches, 0), &subject.designs, dimension, &settings);
         context.check()?;

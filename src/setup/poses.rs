@@ -26,12 +26,11 @@ pub struct MatedPose {
 
 impl MatedPose {
     fn new(mate: &Mate, first: &Mate) -> Self {
-        let origin = mate.pose.translation.vector / MM;
         MatedPose {
             insert_along: value(along_of(&-mate.out.into_inner())),
             depth_mm: mate.engaged_m / MM,
             turn_deg: mate.pose.rotation.angle_to(&first.pose.rotation) / DEG,
-            origin_mm: [origin.x, origin.y, origin.z],
+            origin_mm: (mate.pose.translation.vector / MM).into(),
         }
     }
 

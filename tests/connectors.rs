@@ -452,7 +452,7 @@ fn a_depth_that_no_connector_has_is_refused() {
 fn a_handle_that_the_pads_cannot_hold_is_refused() {
     for size in ["1x1x1", "10x12x2.9", "10x0.9x20", "101x12x20", "0.9x12x20"] {
         let ran = optimize(&["task", "import", "p.stl", "--body", size]);
-        ran.fails(2, &["--body: is", "1 to 100 mm between the jaws", "a length of at least 3 mm"]);
+        ran.fails(2, &["--body: the pads need 1 to 100 mm", "a length of at least 3 mm"]);
     }
     optimize(&["task", "import", "p.stl", "--body", "10x12x3"]).fails(2, &["p.stl"]);
 }

@@ -132,9 +132,8 @@ fn check_drawing(
                 None => "lack a face of the drawing".to_owned(),
             };
             let at = at(off.place);
-            let whose = BODIES[body];
-            let problem = format!("the convex parts of the {whose} {how} {at}, in the mated pose");
-            (files[body].to_owned(), problem)
+            let (file, body) = (files[body].to_owned(), BODIES[body]);
+            (file, format!("the convex parts of the {body} {how} {at}, in the mated pose"))
         }
         (None, Some(off)) => {
             let [drawn, parts] = off.gaps.map(|gap| gap / MM);

@@ -72,6 +72,8 @@ pub fn mated(
         triangles.map(|of| of.iter().map(|t| t.map(|p| p * unit.metres())).collect());
     let (plug, plug_inward) = oriented(files[0], triangles[0], unit, context);
     let (socket, socket_inward) = oriented(files[1], triangles[1], unit, context);
+    // Begun after the notes on the files, which would break the line of a spinner.
+    let _busy = context.busy("making the task from the shapes");
     let (mate, poses) = mate(files, [&plug, &socket], request, context, &mut findings)?;
     let out = mate.out.into_inner();
     let across = mate.across.map(|way| way.into_inner());

@@ -62,10 +62,8 @@ impl command::Request for Request {
         let handle = self.pair.body.map_or(Ok(()), check_handle);
         handle.map_err(|problem| Failure::usage(format!("--body: {problem}")))?;
         check_is_new(out)?;
-        let busy = context.busy("making the task from the shapes");
         let mut mated = self.mated_task(context)?;
         not_stopped(stop)?;
-        drop(busy);
         let _busy = context.busy("trying strategies");
         let (task, tuned) = tune_new(mated.made.task, self.engine, stop)?;
         mated.made.task = task;

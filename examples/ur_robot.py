@@ -116,10 +116,10 @@ class URRobot:
         if self.face is None:
             raise ValueError("face: teach a pose above the flat face beside the opening")
         half_mm, height_mm = 500.0 * PROBE_M, 1000.0 * height_m
-        catching_n = min(4.0 * PROBE_N, self.stop_n)
+        pressing_n, catching_n = min(PROBE_N, self.stop_n), min(4.0 * PROBE_N, self.stop_n)
         above, down = [0.0, -half_mm, 0.0], [0.0, -half_mm, -1000.0 * PROBE_DEPTH_M]
         moves = [Move("above", self.pose(above, self.face), RETREAT_M_S, self.touch_n),
-                 Move("down", self.pose(down, self.face), PROBE_M_S, PROBE_N)]
+                 Move("down", self.pose(down, self.face), PROBE_M_S, pressing_n)]
         # At constant height the normal force varies; the log contains the normal and the tangential force.
         for y_mm in (half_mm, -half_mm, half_mm, -half_mm):
             moves.append(Move("slide", self.pose([0.0, y_mm, height_mm], self.face), PROBE_M_S, catching_n))

@@ -1,7 +1,7 @@
 //! Context of a running command: cancellation and progress.
 
 use crate::failure::Failure;
-use crate::progress::{Busy, Part, Progress};
+use crate::progress::{Busy, Progress};
 use crate::terminal::{print, say};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -111,9 +111,9 @@ impl<'a> Context<'a> {
         drop(self.terminal.as_ref().map(|terminal| terminal.progress().take()));
     }
 
-    /// Shows that a part is done, from any thread.
-    pub fn part(&self, part: &Part) {
-        self.update(|progress| progress.part(part));
+    /// Shows that a part of a phase is done, from any thread; see [`Progress::part`].
+    pub fn part(&self, what: &str, done_of: [usize; 2], cost: f64) {
+        self.update(|progress| progress.part(what, done_of, cost));
     }
 
     /// Shows that a design was evaluated and recorded.

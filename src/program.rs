@@ -148,10 +148,9 @@ fn with_project(
         return Ok((program, Vec::new()));
     }
     let Some(project) = Project::current()? else { return Ok((program, Vec::new())) };
-    let found = project.defaults(command, given)?;
-    let value = project.words(&found);
-    let mut defaults = found.options;
-    if !value.is_empty() {
+    let (mut defaults, words) = project.defaults(command, given)?;
+    if !words.is_empty() {
+        let value = format!("{} {words}", project.file);
         say(&value);
         defaults.push(OptionDefault { option: "project", value });
     }

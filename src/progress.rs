@@ -9,19 +9,6 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 use study::{Recorded, Study};
 
-/// Progress of a long phase that has several parts.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Part {
-    /// Phase and its object, for example a design: `confirming 10 %, 26°`.
-    pub what: String,
-    /// Number of parts done.
-    pub done: usize,
-    /// Total number of parts of the phase.
-    pub of: usize,
-    /// Approximate cost of a part, in multiples of one evaluation of the search.
-    pub cost: f64,
-}
-
 /// Computing time of a part in multiples of one evaluation of the search, measured on the tasks usb and ket8. Used only
 /// to estimate the time left.
 pub mod cost {
@@ -90,9 +77,10 @@ impl Progress {
         Progress { bar, shown, printed: now, last: now, done: 0.0, left, computed, search: None }
     }
 
-    /// Shows that a part is done.
-    pub fn part(&mut self, Part { what, done, of, cost }: &Part) {
-        self.step(*cost, &format!("{what}: {done}/{of}"), *done == 0 || done == of);
+    /// Shows that a part of a phase is done, which cost this many evaluations; `what` is the phase and its object, for
+    /// example a design: `confirming 10 %, 26°`.
+    pub fn part(&mut self, what: &str, [done, of]: [usize; 2], cost: f64) {
+        self.step(cost, &format!("{what}: {done}/{of}"), done == 0 || done == of);
     }
 
     /// Shows that a design was evaluated.

@@ -53,15 +53,6 @@ pub struct OptionDefault {
     pub value: String,
 }
 
-/// Defaults of the options of a command, from a project file.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Defaults {
-    /// Options that the file sets.
-    pub options: Vec<OptionDefault>,
-    /// Values in the file that the command does not use, each with the reason.
-    pub unused: Vec<String>,
-}
-
 impl Project {
     /// Returns the project of the current folder: the project file in it or in the nearest parent folder.
     ///
@@ -89,14 +80,15 @@ impl Project {
             let each = value.split(',').map(|name| beside(folder, name.trim()));
             *value = each.collect::<Vec<_>>().join(",");
         }
-        let threads = settings.threads.map(i64::from);
         let project = Project { file, text, settings };
-        if let Some(count) = threads.filter(|count| !THREADS.contains(count)) {
-            let (least, most) = (THREADS.start(), THREADS.end());
-            let problem = format!("{count}: must lie between {least} and {most}");
-            return Err(project.fault("threads", problem));
+        match project.settings.threads {
+            Some(count) if !THREADS.contains(&i64::from(count)) => {
+                let (least, most) = (THREADS.start(), THREADS.end());
+                let problem = format!("{count}: must lie between {least} and {most}");
+                Err(project.fault("threads", problem))
+            }
+            _ => Ok(project),
         }
-        Ok(project)
     }
 
     /// Returns the error of the value of a key.
@@ -119,8 +111,9 @@ impl Project {
         })
     }
 
-    /// Returns the defaults for a command; `given` returns whether an option is on the command line, which
-    /// takes precedence.
+    /// Returns the defaults for a command; and the options that the file sets and the values that the command does not
+    /// use, as text: `sets task usb; cell cell.toml not used: --robot`. `given` returns whether an option is on the
+    /// command line, which takes precedence.
     ///
     /// # Errors
     /// If the command uses the cell, and its file does not exist.
@@ -128,12 +121,12 @@ impl Project {
         &self,
         command: &Command,
         given: impl Fn(&str) -> bool,
-    ) -> Result<Defaults, Failure> {
+    ) -> Result<(Vec<OptionDefault>, String), Failure> {
         let Settings { task, robot, cell, measurements, space, threads } = self.settings.clone();
-        let mut unused = Vec::new();
+        let mut words = Vec::new();
         let mut unless = |why: Option<String>, key: &str, value: Option<String>| {
             let (Some(value), Some(why)) = (&value, why) else { return value };
-            unused.push(format!("{key} {value} not used: {why}"));
+            words.push(format!("{key} {value} not used: {why}"));
             None
         };
         let name = command.get_name();
@@ -152,17 +145,17 @@ impl Project {
         // With measurements the cell replaces the priors. `identify` writes the cell and does not read it. A robot on
         // the command line takes precedence.
         let cell_option = if measured && takes("priors") { "priors" } else { "cell" };
-        let cell = cell.filter(|_| takes(cell_option) && name != "identify");
-        let cell = cell.filter(|_| !["cell", "priors"].into_iter().any(&given));
+        let option = ["cell", "priors"].into_iter().find(|option| given(option));
+        let used = takes(cell_option) && name != "identify" && option.is_none();
+        let cell = cell.filter(|_| used);
         let cell = unless(given("robot").then(|| "--robot".to_owned()), "cell", cell);
         cell.iter().try_for_each(|_| self.check_cell())?;
-        let option = ["cell", "priors"].into_iter().find(|option| given(option));
         let with_robot = cell.as_ref().map(|cell| format!("cell {cell}"));
         let with_robot = with_robot.or(option.map(|option| format!("--{option}")));
         let robot = robot.filter(|_| takes("robot") && !given("robot"));
         let robot = unless(with_robot, "robot", robot);
         let threads = threads.map(|count| count.to_string());
-        let options = [
+        let options: Vec<_> = [
             (Some("task"), task),
             (Some("robot"), robot),
             (Some(cell_option), cell),
@@ -172,21 +165,13 @@ impl Project {
         ]
         .into_iter()
         .filter_map(|(option, value)| Some(OptionDefault { option: option?, value: value? }))
-        .filter(|set| (set.option == "file" || takes(set.option)) && !given(set.option));
-        Ok(Defaults { options: options.collect(), unused })
-    }
-
-    /// Returns the file, the options that it sets and the values that are not used, as text:
-    /// `finger-opt.toml sets task usb; cell cell.toml not used: --robot`. Empty if there are none.
-    pub fn words(&self, Defaults { options, unused }: &Defaults) -> String {
+        .filter(|set| (set.option == "file" || takes(set.option)) && !given(set.option))
+        .collect();
         let set = options.iter().map(|OptionDefault { option, value }| format!("{option} {value}"));
-        let set = set.collect::<Vec<_>>().join(", ");
-        let set = (!set.is_empty()).then(|| format!("sets {set}"));
-        let parts: Vec<String> = set.into_iter().chain(unused.iter().cloned()).collect();
-        if parts.is_empty() {
-            return String::new();
+        if !options.is_empty() {
+            words.insert(0, format!("sets {}", set.collect::<Vec<_>>().join(", ")));
         }
-        format!("{} {}", self.file, parts.join("; "))
+        Ok((options, words.join("; ")))
     }
 }
 

@@ -267,8 +267,9 @@ fn a_finger_of_a_task_of_ones_own_is_measured_without_naming_it_twice() {
     assert!(next.succeeds().starts_with("mine: 2 fingers measured"), "{}", next.stdout);
     // Predictions carry their interval, and how many intervals of measured fingers were right.
     next.says(&["predicted without their own measurement, "]);
-    let choice = next.stdout.lines().find(|line| line.starts_with("without a further print"));
-    assert!(choice.is_some_and(|line| line.contains(" mm (80 %: ")), "{}", next.stdout);
+    let choice = next.stdout.split("\nwithout a further print choose ").nth(1);
+    assert!(choice.is_some_and(|text| text.contains("(80 %: ")), "{}", next.stdout);
+    assert!(next.stdout.lines().all(|line| line.chars().count() <= 80), "{}", next.stdout);
     // A study recommends the finger that `next` would choose without a further print.
     let found = line(&format!("next --json {few} own/bench.csv")).json();
     assert_eq!(found["loo_designs"], 2);

@@ -137,7 +137,7 @@ fn a_force_that_the_connector_does_not_withstand_comes_first() {
         include_str!("../robots/servo.toml").replace("stop_force_n = 150.0", "stop_force_n = 7.0");
     let robot = studies.file("robot.toml", robot);
     let stops = studies.study("stops", 30, &["--robot", &robot, "--no-levers", "--no-map"]);
-    stops.says(&["of the 7 N at which"]);
+    stops.says(&["the 7 N at which"]);
     let evaluate = "evaluate --task usb --density 20 --direction 10 --robot";
     let of = |robot: &str| fake(&format!("{evaluate} {robot}"));
     of(&robot).says(&["above the limit of connector or robot, 7 N"]);

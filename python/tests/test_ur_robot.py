@@ -91,6 +91,7 @@ def test_an_attempt_ends_at_the_limit_of_the_connector_or_of_the_robot(example):
     assert largest_n(robot(force_n=90.0)) == 90
     assert largest_n(robot(force_n=90.0, force_limit_n=60)) == 60
     assert largest_n(robot(force_n=12.0)) == 12
+    assert largest_n(robot(force_n=4.0, touch_n=3.0)) == 4
     with pytest.raises(ValueError, match="force_limit_n: is 100 N; .* at most 90 N"):
         robot(force_n=90.0, force_limit_n=100)
     with pytest.raises(ValueError, match="above touch_n, 5 N"):

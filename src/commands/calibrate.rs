@@ -46,7 +46,7 @@ impl command::Request for Request {
         let source = measured::file(&self.bench.measurements)?;
         let Prepared { subjects, layout, settings } =
             self.calibration.prepare((&self.bench, &source), &[], context)?;
-        let done = |[done, of]: [usize; 2]| context.part(&folds(done, of));
+        let done = folds(context);
         let found = Calibration::new(layout, &subjects, &Settings { done: &done, ..settings });
         context.check()?;
         let tasks = subjects.iter().zip(&found.tasks);

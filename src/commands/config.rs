@@ -50,28 +50,23 @@ fn text(file: Option<&str>, settings: Settings) -> String {
     let none = format!("no {PROJECT_FILE} in this folder or above");
     let from = file.unwrap_or_default();
     let threads = threads.map(|count| count.to_string());
-    let contained = cell.as_ref().map(|_| "; not used: the cell contains one");
-    let missing = measurements.as_ref().filter(|name| !exists(name)).map(|_| "; no such file yet");
+    let contained = if cell.is_some() { "; not used: the cell contains one" } else { "" };
+    let there = measurements.as_deref().is_none_or(exists);
+    let missing = if there { "" } else { "; no such file yet" };
     let rows = [
-        ("task", task, "none"),
-        ("robot", robot, DEFAULT_ROBOT),
-        ("cell", cell, "none"),
-        ("measurements", measurements, "none"),
-        ("space", space, DEFAULT_SPACE),
-        ("threads", threads, "one per processor"),
+        ("task", task, "none", ""),
+        ("robot", robot, DEFAULT_ROBOT, contained),
+        ("cell", cell, "none", ""),
+        ("measurements", measurements, "none", missing),
+        ("space", space, DEFAULT_SPACE, ""),
+        ("threads", threads, "one per processor", ""),
     ];
-    let rows = rows.into_iter().map(|(key, set, default)| {
-        let (value, origin) = match &set {
-            Some(value) => (value.as_str(), from),
-            None => (default, "default"),
+    let rows = rows.into_iter().map(|(key, set, default, remark)| {
+        let text = match set {
+            Some(value) => format!("{value:<24} ({from}{remark})"),
+            None => format!("{default:<24} (default)"),
         };
-        let remark = match key {
-            "robot" => contained,
-            "measurements" => missing,
-            _ => None,
-        };
-        let remark = remark.filter(|_| set.is_some()).unwrap_or_default();
-        (key.to_owned(), format!("{value:<24} ({origin}{remark})"))
+        (key.to_owned(), text)
     });
     let first = ("file".to_owned(), file.map_or(none, str::to_owned));
     lines(std::iter::once(first).chain(rows))

@@ -4,7 +4,7 @@ use crate::command::{self, Output};
 use crate::context::Context;
 use crate::failure::Failure;
 use crate::layout;
-use crate::progress::{Part, cost};
+use crate::progress::cost;
 use crate::setup::Setup;
 use crate::setup::finger::FingerRequest;
 use crate::setup::request::SetupRequest;
@@ -59,8 +59,7 @@ pub(crate) fn levers(
 ) -> Result<Levers, Failure> {
     let (evaluator, template) = (&setup.evaluator, setup.only_task()?);
     let done = |[done, of]: [usize; 2]| {
-        let cost = cost::LEVERS / of as f64;
-        context.part(&Part { what: "windows of the levers".to_owned(), done, of, cost });
+        context.part("windows of the levers", [done, of], cost::LEVERS / of as f64);
     };
     let space = &setup.space;
     let analysis = LeverAnalysis { evaluator, template, space, design, given, done: &done };

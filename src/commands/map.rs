@@ -4,7 +4,7 @@ use crate::command::{self, Output};
 use crate::context::Context;
 use crate::failure::Failure;
 use crate::layout;
-use crate::progress::{Part, cost};
+use crate::progress::cost;
 use crate::setup::Setup;
 use crate::setup::finger::{ChosenFinger, FingerRequest};
 use crate::setup::request::SetupRequest;
@@ -90,9 +90,8 @@ pub(crate) fn map_of(
     let grasp = Grasp { stop: context.stop, ..Grasp::of(&scenario.finger) };
     let plane = Plane::new(&*rig, grasp, axes);
     let what = format!("trials of the map {}", value_name(axes));
-    let part = |[done, of]: [usize; 2], trials: usize| {
-        let cost = cost::MAP * trials as f64 / MAX_TRIALS as f64;
-        context.part(&Part { what: what.clone(), done, of, cost });
+    let part = |done_of, trials: usize| {
+        context.part(&what, done_of, cost::MAP * trials as f64 / MAX_TRIALS as f64);
     };
     let count = AtomicUsize::new(0);
     let done = || {

@@ -3,6 +3,7 @@
 use crate::command::{self, Output};
 use crate::context::Context;
 use crate::failure::Failure;
+use crate::layout::wrapped;
 use crate::progress::cost;
 use crate::setup::bench::{BenchRequest, CalibrationRequest, Prepared, folds};
 use crate::setup::measured;
@@ -10,7 +11,7 @@ use crate::setup::words::parse_at_least_0;
 use ask_tell::stream::stream;
 use calibration::bench::Settings;
 use calibration::calibrate::leave_one_out;
-use calibration::next::{Advice, Choice, Fingers, advise};
+use calibration::next::{Advice, Fingers, advise};
 use input::shipped::Source;
 use insertion::space::Design;
 use insertion::stiffness::designs;
@@ -120,7 +121,7 @@ impl command::Request for Request {
         let mut random = stream(settings.seed, 0, "next");
         let (count, cost_mm) = (usize::from(self.count), self.print_cost_mm);
         let advice = advise(bench, &posterior, fingers, count, cost_mm, &mut random);
-        let done = |[done, of]: [usize; 2]| context.part(&folds(done, of));
+        let done = folds(context);
         let (settings, dimension) = (Settings { done: &done, ..settings }, layout.dimension());
         let left_out = leave_one_out((&benches, 0), &subject.designs, dimension, &settings);
         context.check()?;
@@ -133,8 +134,13 @@ impl command::Request for Request {
             measurements_missing: missing,
             advice,
         };
-        Ok(Output::new(value.text(file, cost_mm), value))
+        Ok(Output::new(wrapped(&value.text(file, cost_mm)), value))
     }
+}
+
+/// Returns an expected range and its interval as text.
+fn interval(expected_mm: f64, low_mm: f64, high_mm: f64) -> String {
+    format!("{expected_mm:.1} mm (80 %: {low_mm:.1} to {high_mm:.1})")
 }
 
 impl Advised {
@@ -163,12 +169,10 @@ impl Advised {
         }
         for (i, print) in advice.next.iter().enumerate() {
             text += &format!(
-                "{}. {}\n   expected {:.1} mm (80 %: {:.1} to {:.1}): {}\n",
+                "{}. {}\n   expected {}: {}\n",
                 i + 1,
                 design(&print.design),
-                print.expected_mm,
-                print.low_mm,
-                print.high_mm,
+                interval(print.expected_mm, print.low_mm, print.high_mm),
                 print.reason
             );
             if !print.needs_print {
@@ -185,11 +189,10 @@ impl Advised {
         }
         if let Some(choice) = advice.choice.as_ref().filter(|_| advice.stop || *measured > 0) {
             let known = if choice.measured { "measured" } else { "not measured" };
-            let Choice { expected_mm, low_mm, high_mm, .. } = choice;
             text += &format!(
-                "without a further print choose {}: expected {expected_mm:.1} mm (80 %: {low_mm:.1} to \
-                 {high_mm:.1}), {known}\n",
-                design(&choice.design)
+                "without a further print choose {}: expected {}, {known}\n",
+                design(&choice.design),
+                interval(choice.expected_mm, choice.low_mm, choice.high_mm)
             );
         }
         text

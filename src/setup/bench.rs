@@ -6,7 +6,7 @@ use super::run::{CacheRequest, EffortRequest, settings};
 use super::{Setup, measured};
 use crate::context::Context;
 use crate::failure::Failure;
-use crate::progress::{Part, cost};
+use crate::progress::cost;
 use calibration::bench::Settings;
 use calibration::calibrate::Layout;
 use calibration::emulator::{CalibrationError, Emulator};
@@ -113,9 +113,9 @@ impl CalibrationRequest {
     }
 }
 
-/// Returns the progress of the leave-one-out validation: calibrations with one finger left out.
-pub(crate) fn folds(done: usize, of: usize) -> Part {
-    Part { what: "fingers left out".to_owned(), done, of, cost: cost::FOLD }
+/// Returns the progress callback of the leave-one-out validation: calibrations with one finger left out.
+pub(crate) fn folds(context: &Context<'_>) -> impl Fn([usize; 2]) {
+    |done_of| context.part("fingers left out", done_of, cost::FOLD)
 }
 
 /// Setup, priors and simulations of a calibration.
@@ -146,17 +146,11 @@ impl<'a> CalibrationContext<'a> {
         let Setup { evaluator, space, .. } = self.setup;
         let subject = |template: &'a Template| {
             let (task, count) = (&template.task.name, self.simulations);
-            let cached = self.cache.as_ref().map_or(String::new(), |folder| {
-                let folder = folder.display();
-                format!(", reusing {folder} unless task, robot or cell changed")
-            });
-            let show = |done, cost, more: &str| {
-                let what = format!("{task}: simulations{more}");
-                self.context.part(&Part { what, done, of: count, cost });
-            };
-            show(0, 0.0, &format!(" with drawn parameters of the cell{cached}"));
+            let what = format!("{task}: simulations with drawn parameters of the cell");
+            let show = |done, cost| self.context.part(&what, [done, count], cost);
+            show(0, 0.0);
             let counted = AtomicUsize::new(0);
-            let done = || show(counted.fetch_add(1, Ordering::Relaxed) + 1, cost::SIMULATION, "");
+            let done = || show(counted.fetch_add(1, Ordering::Relaxed) + 1, cost::SIMULATION);
             let (parameters, cache) = (self.priors.of(task), self.cache.clone());
             let simulation =
                 Simulation::new(evaluator, template, parameters, cache, self.context.stop);

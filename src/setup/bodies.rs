@@ -156,10 +156,9 @@ pub fn parts(files: Files, request: &PairRequest, context: &Context<'_>) -> Resu
             // A body on its own is named by its shells.
             let bodies = if plug.len() > 1 { plug } else { shells(&plug) };
             let names: Vec<_> = bodies.into_iter().map(|body| body.name).collect();
+            let (file, names) = (files[0], quoted(&names));
             return Err(Failure::usage(format!(
-                "{} has the bodies {}: give --socket, or name those of the plug with --plug-body",
-                files[0],
-                quoted(&names)
+                "{file} has the bodies {names}: give --socket, or name those of the plug with --plug-body"
             )));
         }
         (None, None) => [all(plug), all(socket)],

@@ -9,6 +9,7 @@ use connector::mating::Mate;
 use connector::mesh::axes::{Along, Jaws, Unit, value};
 use connector::mesh::mated::{GAP, HANDLE, Interference, Pair, PairTask, TOLERANCE, task};
 use connector::mesh::{self, Files, SIZES, Surface, Triangle, reduced};
+use connector::write::origin;
 use input::units::MM;
 use insertion::task::Task;
 use nalgebra::{Point3, Vector3};
@@ -71,9 +72,8 @@ pub fn mated(
         triangles.map(|of| of.iter().map(|t| t.map(|p| p * unit.metres())).collect());
     let (plug, plug_inward) = oriented(files[0], triangles[0], unit, context);
     let (socket, socket_inward) = oriented(files[1], triangles[1], unit, context);
-    if request.assembly.is_none() {
-        context.note("looking for the mated pose");
-    }
+    // Begun after the notes on the files, which would break the line of a spinner.
+    let _busy = context.busy("making the task from the shapes");
     let (mate, poses) = mate(files, [&plug, &socket], request, context, &mut findings)?;
     let out = mate.out.into_inner();
     let across = mate.across.map(|way| way.into_inner());
@@ -134,9 +134,8 @@ fn check_drawing(
                 None => "lack a face of the drawing".to_owned(),
             };
             let at = at(off.place);
-            let whose = BODIES[body];
-            let problem = format!("the convex parts of the {whose} {how} {at}, in the mated pose");
-            (files[body].to_owned(), problem)
+            let (file, body) = (files[body].to_owned(), BODIES[body]);
+            (file, format!("the convex parts of the {body} {how} {at}, in the mated pose"))
         }
         (None, Some(off)) => {
             let [drawn, parts] = off.gaps.map(|gap| gap / MM);
@@ -169,15 +168,6 @@ fn check_drawing(
     Err(Failure::in_file(file, problem))
 }
 
-/// Describes the height of the task's origin, from which depths are counted: that of the plug's tip when the socket
-/// begins to enclose it, inside a chamfer below the top.
-pub fn origin(made: &PairTask) -> String {
-    match made.top / MM {
-        ..0.005 => "on the socket's top".to_owned(),
-        top_mm => format!("{top_mm:.2} mm below the socket's top"),
-    }
-}
-
 /// Returns findings about the mate of a plug of this length along the axis, with this depth to be reached, m, and the
 /// grip.
 fn described(
@@ -192,7 +182,7 @@ fn described(
         true => format!("{depth:.2} mm of the plug's {long:.2} mm engage"),
         false => format!("the plug of {long:.2} mm goes {depth:.2} mm along a post"),
     };
-    let mut findings = vec![("mate", format!("{engaged}; z = 0 is {}", origin(made)))];
+    let mut findings = vec![("mate", format!("{engaged}; z = 0 is {}", origin(made.top)))];
     if mate.through {
         findings
             .push(("through", format!("nothing stops the plug: {needed:.2} mm must be reached")));

@@ -26,12 +26,11 @@ pub struct MatedPose {
 
 impl MatedPose {
     fn new(mate: &Mate, first: &Mate) -> Self {
-        let origin = mate.pose.translation.vector / MM;
         MatedPose {
             insert_along: value(along_of(&-mate.out.into_inner())),
             depth_mm: mate.engaged_m / MM,
             turn_deg: mate.pose.rotation.angle_to(&first.pose.rotation) / DEG,
-            origin_mm: [origin.x, origin.y, origin.z],
+            origin_mm: (mate.pose.translation.vector / MM).into(),
         }
     }
 
@@ -95,11 +94,8 @@ pub fn depth(request: &PairRequest, mate: &Mate, long: f64) -> Result<f64, Failu
     if depth_mm <= most_mm {
         return Ok(depth_mm * MM);
     }
-    let [long_mm, engaged_mm] = [long, mate.engaged_m].map(|length| length / MM);
-    Err(Failure::usage(format!(
-        "--depth-mm {depth_mm}: the plug is {long_mm:.2} mm long and engages over {engaged_mm:.2} mm; give at most \
-         {most_mm} mm"
-    )))
+    let problem = format!("plug and socket are long enough for at most {most_mm} mm");
+    Err(Failure::usage(format!("--depth-mm {depth_mm}: {problem}")))
 }
 
 pub(super) fn jaws_of(way: &Vector3<f64>) -> Jaws {

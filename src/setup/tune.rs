@@ -82,19 +82,20 @@ pub fn tried(tuned: &Tuned) -> String {
     let searched = tuned.steps.iter().filter(|step| step.stage == Stage::Search).count();
     let named = tuned.steps.iter().filter(|step| step.stage != Stage::Search);
     let mut all = distinct(named.map(|step| step.change.as_str()));
+    let variations = format!("{searched} variations of tilt, strokes, preload and speed");
     if searched > 0 {
-        all.push(format!("{searched} variations of tilt, strokes, preload and speed"));
+        all.push(&variations);
     }
     all.join("; ")
 }
 
 /// Returns each change once; one with a slower push is not another one.
-fn distinct<'a>(changes: impl Iterator<Item = &'a str>) -> Vec<String> {
-    let mut all: Vec<String> = Vec::new();
+fn distinct<'a>(changes: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
+    let mut all = Vec::new();
     for change in changes {
         let change = change.split(", push slowed").next().unwrap_or(change);
-        if !all.iter().any(|known| known == change) {
-            all.push(change.to_owned());
+        if !all.contains(&change) {
+            all.push(change);
         }
     }
     all

@@ -7,7 +7,7 @@ use crate::commands::levers::levers;
 use crate::commands::map::map_of;
 use crate::context::{Context, not_stopped};
 use crate::failure::Failure;
-use crate::progress::{Part, cost};
+use crate::progress::cost;
 use crate::setup::Setup;
 use crate::setup::files::robot;
 use crate::setup::robots::stiffness_and_lag;
@@ -94,16 +94,12 @@ impl Ended {
         let levers_missing = found.levers.is_none() && !self.run.no_levers;
         let maps_missing = found.maps.is_empty() && !self.run.no_map;
         let robots_missing = found.robots.is_empty() && own_task(record);
-        let costs = [
-            (levers_missing, cost::LEVERS),
-            (maps_missing, MAPPED.len() as f64 * cost::MAP),
-            (robots_missing, cost::WALKED),
-        ];
-        let cost: f64 = costs.iter().filter(|(missing, _)| *missing).map(|(_, cost)| cost).sum();
-        if cost == 0.0 {
+        if !levers_missing && !maps_missing && !robots_missing {
             return Ok(found);
         }
-        context.begin(cost);
+        let maps = MAPPED.len() as f64 * cost::MAP;
+        let cost = f64::from(levers_missing) * cost::LEVERS + f64::from(maps_missing) * maps;
+        context.begin(cost + f64::from(robots_missing) * cost::WALKED);
         let engine = &subject.provenance.engine.name;
         let setup = Setup::from_inputs(&record.inputs(dir)?, engine)?;
         let design = &subject.design;
@@ -124,8 +120,7 @@ impl Ended {
                 subject.write(dir, MAPS, &found.maps)?;
             }
             if robots_missing {
-                let what = "window with another robot".to_owned();
-                context.part(&Part { what, done: 0, of: 1, cost: 0.0 });
+                context.part("window with another robot", [0, 1], 0.0);
                 found.robots = robots(&setup, answer, scenario, stop)?;
                 subject.write(dir, ROBOTS, &found.robots)?;
             }

@@ -55,7 +55,7 @@ pub(crate) fn predict(
     let provenance = study.provenance().clone();
     let (found, predictions) = pool.install(|| {
         let (subjects, layout) = known.subjects(&measured.file, &measured.experiments, &[])?;
-        let done = |[done, of]: [usize; 2]| context.part(&folds(done, of));
+        let done = folds(context);
         let settings = Settings { done: &done, ..settings(effort, known.seed, context.stop) };
         let calibration = Calibration::new(layout, &subjects, &settings);
         context.check()?;

@@ -4,7 +4,7 @@ use super::optimizer::optimizer;
 use super::{film, on_bench, printable, report, unusable};
 use crate::context::Context;
 use crate::failure::{Failure, bad_config};
-use crate::progress::{Part, cost};
+use crate::progress::cost;
 use crate::setup::Setup;
 use crate::setup::run::RunRequest;
 use crate::setup::task::nominal_start;
@@ -182,13 +182,12 @@ pub(super) fn confirmer<'a>(
     pool: &'a ThreadPool,
     context: &'a Context<'_>,
 ) -> Confirmer<'a> {
-    let done = move |phase, recorded: &Recorded, [done, of]: [usize; 2]| {
+    let done = move |phase, recorded: &Recorded, done_of: [usize; 2]| {
         let (word, cost) = match phase {
             ConfirmationStep::Repeated => ("confirming", cost::REPEATED),
             ConfirmationStep::Walked => ("walking", cost::WALKED),
         };
-        let what = format!("{word} {}", short(recorded));
-        context.part(&Part { what, done, of, cost });
+        context.part(&format!("{word} {}", short(recorded)), done_of, cost);
     };
     let walker = cached_evaluator(setup, cache, &Plan::WINDOW, context.stop);
     let walker = CachedEvaluator { search: Search::Walk, ..walker };

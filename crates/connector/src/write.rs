@@ -15,12 +15,21 @@ use nalgebra::{Point3, Vector3};
 pub struct Notes {
     /// Lines of the comment at the top.
     pub head: Vec<String>,
-    /// Height of the origin; `None` if it is on the socket's top.
-    pub origin: Option<String>,
+    /// Height of the socket's top above the origin, m.
+    pub top: f64,
     /// Separate file of the parts; `None` if the task file contains them.
     pub parts: Option<PartsFile>,
     /// Whether parts that overlap, such as contact springs, were left out.
     pub left_out: bool,
+}
+
+/// Describes the height of a task's origin, from which depths are counted, by that of the socket's top above it, m. A
+/// socket with a chamfer begins to enclose the plug's tip below its top.
+pub fn origin(top: f64) -> String {
+    match top / MM {
+        ..0.005 => "on the socket's top".to_owned(),
+        top_mm => format!("{top_mm:.2} mm below the socket's top"),
+    }
 }
 
 /// Returns the text of a separate file of the parts.
@@ -47,7 +56,7 @@ pub fn task(task: &Task, notes: &Notes) -> String {
         ],
     };
     let [x, y] = task.opening.map(pair);
-    let origin = notes.origin.as_deref().unwrap_or("on the socket's top");
+    let origin = origin(notes.top);
     let mut out = format!(
         "{head}# Every key, with its unit and how to choose it: docs/guide/tasks.md.\n\
          # Frame: origin in the middle of the opening, {origin}; z out of the socket; y the\n\

@@ -117,10 +117,8 @@ pub fn resolve(kind: &str, shipped: &[Shipped], name: &str) -> Result<Source, Re
     if near.is_empty() {
         near.extend(nearest(name, &names));
     }
-    let hint = match near.as_slice() {
-        [] => String::new(),
-        near => format!(" (did you mean `{}`?)", near.join("` or `")),
-    };
+    let hint = format!(" (did you mean `{}`?)", near.join("` or `"));
+    let hint = if near.is_empty() { "" } else { &hint };
     let list = if kind == "robot" { " (see `optimize robots`)" } else { "" };
     let text = format!(
         "unknown {kind} `{name}`{hint}\navailable{list}: {}, or give the path of a file",

@@ -6,7 +6,7 @@ use crate::failure::{Failure, within};
 use crate::layout::wrapped;
 use crate::setup::bodies::{PairRequest, parts};
 use crate::setup::files::check_is_new;
-use crate::setup::mated::{MatedTask, left_out_json, mated, origin};
+use crate::setup::mated::{MatedTask, left_out_json, mated};
 use crate::setup::request::DEFAULT_ROBOT;
 use crate::setup::task::{TaskCheck, TaskFile, read_task};
 use crate::setup::tune::{brief, chosen, tune_new};
@@ -59,13 +59,11 @@ impl command::Request for Request {
         let stop = context.stop;
         let out = &self.pair.out();
         within("--depth-mm", self.pair.depth_mm, &(0.4..=300.0))?;
-        let handle = self.pair.body.map_or(Ok(()), |size| check_handle(&size));
+        let handle = self.pair.body.map_or(Ok(()), check_handle);
         handle.map_err(|problem| Failure::usage(format!("--body: {problem}")))?;
         check_is_new(out)?;
-        let busy = context.busy("making the task from the shapes");
         let mut mated = self.mated_task(context)?;
         not_stopped(stop)?;
-        drop(busy);
         let _busy = context.busy("trying strategies");
         let (task, tuned) = tune_new(mated.made.task, self.engine, stop)?;
         mated.made.task = task;
@@ -131,7 +129,7 @@ impl Request {
         );
         let head = vec![head.replace(['\n', '\r'], " "), held];
         let left_out = made.interference.iter().any(|of| !of.cut_back);
-        Notes { head, origin: Some(origin(made)), parts: None, left_out }
+        Notes { head, top: made.top, parts: None, left_out }
     }
 }
 

@@ -4,7 +4,6 @@ use crate::command::{self, Output};
 use crate::context::{Context, not_stopped};
 use crate::failure::Failure;
 use crate::layout::{lines, wrapped};
-use crate::progress::Part;
 use crate::setup::files::{check_is_new, robot};
 use crate::setup::request::{DEFAULT_ROBOT, TaskSource};
 use crate::setup::task::TaskFile;
@@ -99,7 +98,7 @@ impl command::Request for Request {
         let robot = robot(&self.robot)?;
         let tuner = self.tuner(&file.task, &robot, stop);
         let report = |what: &str, cost: usize, done, of| {
-            context.part(&Part { what: what.to_owned(), done, of, cost: cost as f64 });
+            context.part(what, [done, of], cost as f64);
         };
         let effort =
             Effort { last: Stage::Search, until_enough: false, seed: self.seed, progress: &report };

@@ -51,11 +51,11 @@ fn side(case: &TaskBodies, axis: usize, end: usize) -> Option<Problem> {
         case.socket.part_at(&point)
     };
     let part = |at: f64| part_at(at, 0.5, 0.0);
-    let solid = |beyond: f64| part(stated + outward * beyond).is_some();
+    let solid_at = |beyond: f64, share: f64, lower: f64| {
+        part_at(stated + outward * beyond, share, lower).is_some()
+    };
+    let solid = |beyond: f64| solid_at(beyond, 0.5, 0.0);
     let begins = |lower: f64| {
-        let solid_at = |beyond: f64, share: f64, lower: f64| {
-            part_at(stated + outward * beyond, share, lower).is_some()
-        };
         let edge = |i: i32| {
             let share = f64::from(2 * i + 1) / f64::from(2 * POSITIONS);
             let free = [0.0, lower].iter().all(|lower| !solid_at(-TOLERANCE, share, *lower));

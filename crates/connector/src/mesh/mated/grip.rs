@@ -171,18 +171,16 @@ fn grasp_at(
 /// Checks that the pads can hold a handle of a size.
 ///
 /// # Errors
-/// If they cannot: its size, and what they need.
-pub fn check_handle(size: &Size) -> Result<(), String> {
-    let Size { width, height, length } = *size;
+/// If they cannot: what they need.
+pub fn check_handle(Size { width, height, length }: Size) -> Result<(), String> {
     let [near, far] = FACES_MM;
     if (near * MM..=far * MM).contains(&width) && height >= LEAST_WIDTH && length >= LEAST_HEIGHT {
         return Ok(());
     }
-    let [wide, high, long] = [width, height, length].map(|side| side / MM);
-    let [least_high, least_long] = [LEAST_WIDTH, LEAST_HEIGHT].map(|side| side / MM);
+    let [high, long] = [LEAST_WIDTH, LEAST_HEIGHT].map(|side| side / MM);
     Err(format!(
-        "is {wide:.2} x {high:.2} x {long:.2} mm, which the pads cannot hold; they need {near} to {far} mm between the \
-         jaws, a height of at least {least_high} mm and a length of at least {least_long} mm"
+        "the pads need {near} to {far} mm between the jaws, a height of at least {high} mm and a length of at least \
+         {long} mm"
     ))
 }
 

@@ -453,15 +453,6 @@ fn a_touch_felt_at_a_force_and_late_presses_harder() {
     }
 }
 
-#[test]
-fn two_phases_of_one_name_are_refused() {
-    let text = include_str!("../tasks/usb.toml");
-    let twice = text.replacen("name = \"front\"", "name = \"back\"", 1);
-    let error = Task::parse(&twice, "usb.toml").unwrap_err().to_string();
-    let problem = "usb.toml: strategy.phase \"back\" name: two phases have this name";
-    assert!(error.starts_with(problem), "{error}");
-}
-
 /// An RJ45 plug's latch bends under the lips of its jack as far as they force it to, and snaps
 /// back behind them.
 #[test]

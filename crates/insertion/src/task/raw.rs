@@ -211,12 +211,6 @@ fn strategy(check: Check<'_>, raw: Strategy<RawPhase>) -> Result<Strategy, Input
     if !phases.is_sorted_by_key(|phase| phase.stage != Stage::Approach) {
         return check.fail(key, "phases with stage = \"approach\" must come first");
     }
-    // A path selects a phase by its name.
-    let twice = (1..phases.len()).find(|&i| phases[..i].iter().any(|of| of.name == phases[i].name));
-    if let Some(i) = twice {
-        let at = format!("{key} \"{}\" name", phases[i].name);
-        return check.fail(&at, "two phases have this name; give each its own");
-    }
     let strategy = Strategy { tilt, start, rule, phases };
     strategy.check_time(|_| 0.0, 0.0).or_else(|problem| check.fail(key, problem))?;
     Ok(strategy)

@@ -141,9 +141,8 @@ fn with_project(
     let help = ["-h", "--help", "-V", "--version", "help"];
     let aside =
         given(NO_CONFIG) || texts.is_empty() || texts.iter().any(|word| help.contains(word));
-    let takes = command
-        .get_arguments()
-        .any(|arg| arg.get_long() == Some("task") || path[..] == ["measure"]);
+    let set = |arg: &clap::Arg| ["task", "robot"].map(Some).contains(&arg.get_long());
+    let takes = command.get_arguments().any(|arg| set(arg) || path[..] == ["measure"]);
     if aside || !takes {
         return Ok((program, Vec::new()));
     }

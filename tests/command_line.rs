@@ -222,6 +222,9 @@ fn the_project_file_gives_defaults_that_options_precede() {
     let bench = studies.read("lab/bench.csv");
     assert!(bench.contains("usb,10,6"), "{bench}");
     lines("lab", "measure check").succeeds();
+    // A command without a task takes the robot, too.
+    let checked = lines("lab", "task check usb --engine fake").stderr;
+    assert!(checked.starts_with("finger-opt.toml sets robot rigid\n"), "{checked}");
     // With an identified cell, which contains a robot.
     let project = studies.read("lab/finger-opt.toml");
     studies.file("lab/finger-opt.toml", project + "cell = \"cell.toml\"\n");

@@ -108,6 +108,17 @@ fn an_inserted_key_is_deep_upright_and_held() {
 }
 
 #[test]
+fn each_phase_of_a_shifted_trial_ends_at_the_shifted_place() {
+    let at = |offset_mm| trial(&direct("usb"), &finger(1.2, 52.4), offset_mm).phases;
+    for (nominal, shifted) in at(0.0).iter().zip(&at(3.0)).take(3) {
+        let y = |end: &PhaseEnd| [end.tip_mm[1], end.poses.plug.translation.y / MM];
+        for (from, to) in y(nominal).into_iter().zip(y(shifted)) {
+            assert!((to - from - 3.0).abs() < 1e-9, "{}: {from} to {to} mm", shifted.name);
+        }
+    }
+}
+
+#[test]
 fn far_outside_every_task_fails_and_never_diverges() {
     for file in TASKS {
         let rig = direct(file.name);

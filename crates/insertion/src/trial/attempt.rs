@@ -110,6 +110,9 @@ impl<'a> Attempt<'a> {
         let socket = Pose::translation(-start_across, -offset, 0.0) * about_z(yaw);
         shifted.socket = about_z(-yaw) * Pose::translation(start_across, offset, 0.0);
         shifted.world.place(shifted.cell.socket, socket);
+        // The phases so far ended at the start without a shift.
+        let to_task = shifted.socket;
+        shifted.phases.iter_mut().for_each(|phase| phase.transform(&to_task));
         shifted
     }
 

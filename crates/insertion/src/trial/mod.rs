@@ -4,6 +4,8 @@ use crate::finger::Finger;
 use crate::outcome::Outcome;
 use contact::ContactPoint;
 use contact::scene::Pose;
+use input::units::MM;
+use nalgebra::Vector3;
 use serde::Serialize;
 use std::sync::atomic::AtomicBool;
 
@@ -47,6 +49,18 @@ pub struct PhaseEnd {
     /// Contact points of the socket on the plug, task frame; for pictures.
     #[serde(skip)]
     pub contacts: Vec<ContactPoint>,
+}
+
+impl PhaseEnd {
+    /// Transforms tip and poses; no body touches the socket yet.
+    fn transform(&mut self, by: &Pose) {
+        let tip = by.rotation * Vector3::from(self.tip_mm) + by.translation.vector / MM;
+        self.tip_mm = tip.into();
+        let Poses { plug, latch, fingers } = &mut self.poses;
+        for pose in [plug].into_iter().chain(latch).chain(fingers) {
+            *pose = by * *pose;
+        }
+    }
 }
 
 /// Poses of plug and fingers, task frame, m.

@@ -27,7 +27,6 @@ pub(super) fn screen(answer: &Answer, files: &PageFiles) -> Markup {
                 (explained(&expectation(answer))) ". "
                 @if answer.verdict.finger().is_some() { span.trust { (answer.trust.label()) } }
             }
-            @if let Some((_, text)) = lines::region(answer) { p.muted { "Ties: " (text) "." } }
             // With measurements the finger is chosen by predictions for the bench.
             @if let Some((_, text)) = lines::widest(answer).filter(|_| answer.record.on_bench.is_none()) {
                 p.muted { "Widest in the search: " (explained(&text)) "." }
@@ -44,6 +43,8 @@ pub(super) fn screen(answer: &Answer, files: &PageFiles) -> Markup {
             }
         }
         div.next { h2 { "Next step: " (why) } pre { code { (command) } } }
+        // Below, so that the next step is on the first screen.
+        @if let Some((_, text)) = lines::region(answer) { p.muted { "Ties: " (text) "." } }
     }
 }
 

@@ -239,7 +239,8 @@ fn shell() -> Task {
         drawn: [&plug, &socket],
         out: Vector3::z(),
         jaws: &[Vector3::y()],
-        engaged: 6.2 * MM,
+        depth: 6.2 * MM,
+        nose: 0.0,
         play: [0, 1].map(|axis| (Vector3::ith(axis, 1.0), 0.1 * MM)),
     };
     let made = mated::task(&pair, "shell", None, None);

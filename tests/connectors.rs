@@ -322,6 +322,33 @@ fn a_bar_goes_through_a_plate() {
     assert!(!folder.dir("deep.toml").exists() && !folder.dir("deep.place.svg").exists());
 }
 
+/// A narrower nose of 3 mm ahead of the body, which guides the plug.
+#[test]
+fn depths_count_from_the_opening_of_a_plug_with_a_nose() {
+    let folder = Studies::new();
+    let plug = vec![
+        block([-2.5, 2.5], [-6.0, 6.0], [0.0, 3.0]),
+        block([-3.5, 3.5], [-8.0, 8.0], [3.0, 12.0]),
+        block([-5.0, 5.0], [-9.5, 9.5], [12.0, 30.0]),
+    ];
+    let mut socket = frame([14.0, 24.0], [7.2, 16.2], [-16.0, 0.0]);
+    socket.push(block([-7.0, 7.0], [-12.0, 12.0], [-18.0, -16.0]));
+    let found = inserts(&folder, "nosed", [plug, socket], [0.2, 0.2]);
+    assert!(found["found"].to_string().contains("12.00 mm of the plug's 30.00 mm"), "{found}");
+    assert!(found["found"].to_string().contains("z = 0 is on the socket's top"), "{found}");
+    for offset_mm in ["-0.7", "0.7"] {
+        assert_eq!(outcome(&folder, "nosed", offset_mm), "inserted", "{offset_mm}");
+    }
+    // The approach must not end inside of the opening, where nothing blocks the plug.
+    let text = folder.read("nosed.toml");
+    let at = text.find("start_mm = [").unwrap();
+    let start = text[at..].lines().next().unwrap();
+    let z: f64 = start.trim_end_matches(']').rsplit(", ").next().unwrap().parse().unwrap();
+    let low = start.replace(&format!("{z}]"), &format!("{}]", z - 3.0));
+    let inside = folder.file("inside.toml", text.replace(start, &low));
+    optimize(&["task", "check", &inside]).fails(1, &["`approach` ends inside of the socket"]);
+}
+
 /// Plate with two slots for a bar, the second 0.1 mm deeper.
 fn slots() -> [Vec<Block>; 2] {
     let z = [-8.1, 0.0];

@@ -87,7 +87,7 @@ pub fn mated(
     }
     let long = width(extent(plug.iter().flatten().map(|p| mate.pose * p), out.iamax()));
     let depth = depth(request, &mate, long)?;
-    let above = out * (mate.engaged_m - depth);
+    let above = out * (mate.depth_m() - depth);
     let moved = |of: &[Triangle]| -> Vec<Triangle> {
         of.iter().map(|t| t.map(|p| mate.pose * p + above)).collect()
     };
@@ -98,13 +98,14 @@ pub fn mated(
         drawn: [&drawn_plug, &drawn[1]],
         out,
         jaws: &jaws,
-        engaged: depth,
+        depth,
+        nose: mate.nose_m,
         play: [0, 1].map(|i| (across[i], mate.play_m[i])),
     };
     // Height in x, width between the jaws, length.
     let handle = request.body.map(|size| [size.height, size.width, size.length]);
     let made = task(&pair, &request.name(), like, handle);
-    let seat = (!mate.through && depth > mate.engaged_m + TOLERANCE).then_some(mate.engaged_m);
+    let seat = (!mate.through && depth > mate.depth_m() + TOLERANCE).then_some(mate.depth_m());
     check_drawing(files, &made, seat, &request.out().with_extension("place.svg"))?;
     findings.extend(described(&mate, [long, depth], &made, handle));
     findings.extend(parts.finding);
@@ -176,7 +177,7 @@ fn described(
     made: &PairTask,
     handle: Option<[f64; 3]>,
 ) -> Vec<(&'static str, String)> {
-    let depth = mate.engaged_m / MM;
+    let depth = mate.depth_m() / MM;
     let [long, needed] = lengths.map(|length| length / MM);
     let engaged = match depth <= long {
         true => format!("{depth:.2} mm of the plug's {long:.2} mm engage"),

@@ -16,7 +16,7 @@ use serde::Serialize;
 pub struct MatedPose {
     /// Direction of insertion in the file of the socket.
     insert_along: String,
-    /// Depth over which plug and socket engage.
+    /// Depth of the plug's tip below the socket's edge.
     depth_mm: f64,
     /// Angle between this pose and the first.
     turn_deg: f64,
@@ -28,7 +28,7 @@ impl MatedPose {
     fn new(mate: &Mate, first: &Mate) -> Self {
         MatedPose {
             insert_along: value(along_of(&-mate.out.into_inner())),
-            depth_mm: mate.engaged_m / MM,
+            depth_mm: mate.depth_m() / MM,
             turn_deg: mate.pose.rotation.angle_to(&first.pose.rotation) / DEG,
             origin_mm: (mate.pose.translation.vector / MM).into(),
         }
@@ -82,15 +82,15 @@ pub fn mate(
     Ok((all.swap_remove(request.pose - 1), poses))
 }
 
-/// Returns the depth to be reached, m: that of the request, or that over which plug and socket engage. `long` is the
+/// Returns the depth to be reached, m: that of the request, or that of the mated pose. `long` is the
 /// length of the plug along the axis, m.
 ///
 /// # Errors
 /// If the requested depth is larger than plug and socket allow.
 pub fn depth(request: &PairRequest, mate: &Mate, long: f64) -> Result<f64, Failure> {
-    let Some(depth_mm) = request.depth_mm else { return Ok(mate.engaged_m) };
+    let Some(depth_mm) = request.depth_mm else { return Ok(mate.depth_m()) };
     // A plug that goes along a post engages over more than its length.
-    let most_mm = (long.max(mate.engaged_m) / MM * 100.0).round() / 100.0;
+    let most_mm = (long.max(mate.depth_m()) / MM * 100.0).round() / 100.0;
     if depth_mm <= most_mm {
         return Ok(depth_mm * MM);
     }

@@ -216,7 +216,7 @@ pub fn draft(name: &str, size: &Dimensions, like: Option<&Task>) -> Result<Task,
     }
     if size.pins.is_some() {
         // A pin in the hole of its neighbour is not a success.
-        return Ok(plan::mated(task, plug.length, [size.clearance; 2]));
+        return Ok(plan::mated(task, plug.length, 0.0, [size.clearance; 2]));
     }
     plan::complete(&task)
 }

@@ -74,18 +74,28 @@ pub fn complete(task: &Task) -> Result<Task, String> {
             task.socket[on].name
         ));
     }
-    Ok(planned(&bodies, &seat))
+    let task = planned(&bodies, &seat);
+    let height = |part: &&Part| extent(part.solid.corners(), 2)[0];
+    let lowest = bodies.plug.parts.iter().min_by(|a, b| height(a).total_cmp(&height(b)));
+    let family = match lowest.map(|part| &part.solid) {
+        Some(Solid::Cylinder { .. }) => Family::Peg,
+        _ => Family::Key,
+    };
+    Ok(Task { strategy: family.strategy(&task, &bodies.plug, seat.depth), ..task })
 }
 
 /// Returns the task with grasp point, strategy and success derived from shapes, opening, shoulder, faces and the mated
-/// pose, at a depth on the axis, m, with a play in x and in y, m.
-pub fn mated(mut task: Task, depth: f64, play: [f64; 2]) -> Task {
+/// pose: a depth on the axis, m, the length of the plug's nose, which enters without being guided, m, and a play in x and
+/// in y, m.
+pub fn mated(mut task: Task, depth: f64, nose: f64, play: [f64; 2]) -> Task {
     let lateral = libm::hypot(play[0], play[1]) / 2.0 + ASIDE;
     task.success.mated = Some(Mated { tip: [0.0, 0.0, -depth], lateral });
     let bodies = TaskBodies::new(&task);
-    planned(&bodies, &bodies.deepest())
+    let task = planned(&bodies, &bodies.deepest());
+    Task { strategy: straight(&task, depth, nose), ..task }
 }
 
+/// Returns the task with grasp point and success.
 fn planned(bodies: &TaskBodies, seat: &Seat) -> Task {
     let (mut task, plug) = (bodies.task.clone(), &bodies.plug);
     let pads = pad_contacts(plug, task.grip.shoulder_z, Some(task.grip.faces_y));
@@ -98,30 +108,20 @@ fn planned(bodies: &TaskBodies, seat: &Seat) -> Task {
         None => bodies.play(WITHIN * seat.depth, seat.at, 1),
     };
     success(&mut task, plug, seat, play);
-    let height = |part: &&Part| extent(part.solid.corners(), 2)[0];
-    let lowest = plug.parts.iter().min_by(|a, b| height(a).total_cmp(&height(b)));
-    let family = match lowest.map(|part| &part.solid) {
-        Some(Solid::Cylinder { .. }) => &Family::Peg,
-        _ => &Family::Key,
-    };
-    task.strategy = match task.success.mated {
-        Some(mated) => straight(&task, &mated),
-        None => family.strategy(&task, plug, seat.depth),
-    };
     task
 }
 
-/// Returns a strategy that sets the plug down upright over its seat, sweeps it along y until it drops in, and pushes.
-/// Drawn connectors have a lead-in, and pins and tongues that a tilted plug would meet first.
-fn straight(task: &Task, mated: &Mated) -> Strategy {
-    let [x, y, z] = mated.tip;
-    let start = [x, y, task.grip.tcp_z + AIR[0]].map(round_mm);
-    let push = start[2] - AIR[0] - SWEPT_PRELOAD - (task.grip.tcp_z + z - PUSH[0]);
+/// Returns a strategy that sets the plug down upright over its seat, at this depth, m, sweeps it along y until it drops
+/// in, and pushes. Drawn connectors have a lead-in, and pins and tongues that a tilted plug would meet first.
+fn straight(task: &Task, depth: f64, nose: f64) -> Strategy {
+    let start = [0.0, 0.0, task.grip.tcp_z + AIR[0]].map(round_mm);
+    // The body touches the socket, its nose below the top.
+    let push = start[2] - AIR[0] - nose - SWEPT_PRELOAD - (task.grip.tcp_z - depth - PUSH[0]);
     use {Ending::*, Stage::*};
     let touch = Touch { preload: SWEPT_PRELOAD, detection: TouchDetection::FIRST };
     let phases = vec![
         phase("approach", Approach, [0.0, 0.0, AIR[1] - AIR[0]], 150.0, Tolerance(0.1 * MM)),
-        phase("touch", Search, [0.0, 0.0, -TOUCH], 20.0, touch),
+        phase("touch", Search, [0.0, 0.0, -(TOUCH + nose)], 20.0, touch),
         phase("back", Search, [0.0, SWEEP, 0.0], 40.0, Duration(0.01)),
         phase("front", Search, [0.0, -2.0 * SWEEP, 0.0], 40.0, Duration(0.01)),
         phase("middle", Search, [0.0, SWEEP, 0.0], 40.0, Duration(0.01)),

@@ -185,11 +185,13 @@ pub fn plug_pose(task: &Task, tcp: Vector3<f64>) -> Pose {
     Pose::from_parts(tcp.into(), turn) * Pose::translation(0.0, 0.0, -task.grip.tcp_z)
 }
 
-/// Returns the start and the ends of the phases; a touch ends at its preload below the socket's top.
+/// Returns the start and the ends of the phases; a touch ends at its preload below the socket's top, or drops an upright
+/// plug into the seat that it stands over.
 pub fn waypoints(task: &Task, plug: &ConvexBody) -> Vec<Waypoint> {
     let start = Vector3::from(task.strategy.start);
     let lowest = plug.lowest(&plug_pose(task, start));
     let edge = lowest.unwrap_or_else(Point3::origin) - start;
+    let drops = task.success.mated.is_some() && task.strategy.tilt == 0.0;
     let mut found = vec![Waypoint {
         name: "start".to_owned(),
         stage: Stage::Approach,
@@ -205,7 +207,7 @@ pub fn waypoints(task: &Task, plug: &ConvexBody) -> Vec<Waypoint> {
             let end = edge.z + by.z;
             if end > 0.0 || by.z >= 0.0 {
                 short_by = Some(end);
-            } else {
+            } else if !drops {
                 // Straight down to the surface, and on by the preload.
                 by *= (edge.z.max(0.0) + preload) / -by.z;
             }

@@ -1,11 +1,11 @@
 //! Checks of the commanded moves: free approach, search over the opening, deep enough push.
 
 use super::{Problem, TaskBodies, interval, mm};
-use crate::body::{Overlap, span};
+use crate::body::{Overlap, span, width};
 use crate::seat::{self, Waypoint, section};
 use input::units::MM;
 use insertion::task::{Ending, Phase, Stage};
-use nalgebra::Vector3;
+use nalgebra::{Translation3, Vector3};
 
 /// Overlap that counts as rounding, m.
 const ROUNDING: f64 = 0.01 * MM;
@@ -19,7 +19,7 @@ const PRESS: f64 = 4.0 * MM;
 pub(super) fn problems(case: &TaskBodies) -> Vec<Problem> {
     let way = seat::waypoints(case.task, &case.plug);
     let mut found: Vec<Problem> = case.task.strategy.phases.iter().filter_map(upward).collect();
-    found.extend(collisions(case, &way));
+    found.extend(collisions(case, &way).or_else(|| enclosed(case, &way)));
     // The other checks are meaningless for moves that go up.
     if found.is_empty() {
         found.extend(way.iter().filter_map(short_touch));
@@ -84,6 +84,29 @@ fn collisions(case: &TaskBodies, way: &[Waypoint]) -> Option<Problem> {
         }
     }
     None
+}
+
+/// Checks that the approach ends outside of the socket, which a shifted trial moves aside.
+fn enclosed(case: &TaskBodies, way: &[Waypoint]) -> Option<Problem> {
+    let last = way.iter().rfind(|point| point.stage == Stage::Approach)?;
+    let pose = seat::plug_pose(case.task, last.tcp);
+    let [bottom, _] = case.plug.extent(2);
+    let half = section(&case.plug, bottom + AIR).map(|range| width(range) / 2.0);
+    let blocked = |by: Vector3<f64>| {
+        let overlap = case.plug.overlap(&(Translation3::from(by) * pose), &case.socket);
+        overlap.is_some_and(|overlap| overlap.depth > ROUNDING)
+    };
+    let sides = [-1.0, 1.0].map(|sign| [0, 1].map(|i| Vector3::ith(i, sign * half[i])));
+    if !sides.into_iter().flatten().all(blocked) {
+        return None;
+    }
+    let z = last.edge.z;
+    let correct = way[0].tcp.z + AIR - z;
+    Some(Problem::new(
+        "strategy.start_mm",
+        format!("`{}` ends inside of the socket, with the tip at z = {} mm", last.name, mm(z)),
+        format!("z = {} mm at least: the trial begins above the socket", mm(correct)),
+    ))
 }
 
 /// Checks that the stroke of a touch reaches the socket.

@@ -276,6 +276,15 @@ pub fn rest(socket: &HeightMap, plug: &HeightMap, shift: [i32; 2], enough: f32) 
     highest
 }
 
+/// Returns the largest height of a plug's cells, in its own frame, that a socket holds at least as high as `least`, m, with
+/// the plug shifted by whole cells; [`NOWHERE`] below zero if there are none.
+pub fn highest_touching([socket, plug]: [&HeightMap; 2], [dx, dy]: [i32; 2], least: f32) -> f32 {
+    let held = |([x, y], height): ([i32; 2], &f32)| {
+        (socket.at(x + dx, y + dy) - height >= least).then_some(*height)
+    };
+    plug.cells().zip(&plug.heights).filter_map(held).fold(-NOWHERE, f32::max)
+}
+
 fn row_rest(socket: &[f32], plug: &[f32], highest: f32) -> f32 {
     let mut lanes = [highest; 8];
     let (s, p) = (socket.chunks_exact(8), plug.chunks_exact(8));

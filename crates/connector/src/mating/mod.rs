@@ -45,6 +45,8 @@ pub struct Mate {
     pub across: [Unit<Vector3<f64>>; 2],
     /// Depth along the axis over which the parts engage, m.
     pub engaged_m: f64,
+    /// Length of the part of the plug ahead of that which engages, m, such as a narrower nose; 0 without one.
+    pub nose_m: f64,
     /// Total lateral play along each of `across`, m; faces that interfere are ignored.
     pub play_m: [f64; 2],
     /// Whether the hole goes through; the tip of the plug is then placed at the far side of the socket.
@@ -61,6 +63,11 @@ pub struct MatingResult {
 }
 
 impl Mate {
+    /// Returns the depth of the plug's tip below the edge of the socket, m.
+    pub fn depth_m(&self) -> f64 {
+        self.engaged_m + self.nose_m
+    }
+
     /// Returns whether the plug is inserted rather than caught on an edge; its triangles are in its own frame.
     fn is_inserted(&self, plug: &[Triangle]) -> bool {
         let out = self.pose.inverse_transform_vector(&self.out);

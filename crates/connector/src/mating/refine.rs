@@ -2,7 +2,7 @@
 
 use super::cells::CellSet;
 use super::engagement::{PlugWalls, SIDES, SocketWalls, overlap, score};
-use super::map::{Envelope, HeightMap, NOWHERE, Window, bounds, rest};
+use super::map::{Envelope, HeightMap, NOWHERE, Window, bounds, highest_touching, rest};
 use super::search::{CoarseSeat, FINE, Scene};
 use super::{MatingError, check_cancelled};
 use input::units::MM;
@@ -48,6 +48,9 @@ pub struct Pose {
     pub penalty: f64,
     /// Smallest lift that frees the plug towards one of the four sides, m.
     pub depth: f64,
+    /// Height above the plug's tip of the part of the plug that this lift frees last, m: more than 0 if a narrower nose
+    /// is ahead of it.
+    pub nose: f64,
 }
 
 impl Pose {
@@ -103,14 +106,16 @@ fn middle(shifts: &[[i32; 2]]) -> [i32; 2] {
     nearest.copied().unwrap_or_default()
 }
 
-/// Returns the smallest lift that frees the plug towards one of the four sides, m.
-fn lift(socket: &HeightMap, plug: &HeightMap, shift: [i32; 2], z: f64, reach: i32) -> f64 {
+/// Returns the smallest height that frees the plug towards one of the four sides, m, and the shift at which the plug
+/// touches the socket there.
+fn freed(socket: &HeightMap, plug: &HeightMap, shift: [i32; 2], reach: i32) -> (f32, [i32; 2]) {
     let side = |[dx, dy]: [i32; 2]| {
-        let path = (1..=reach)
-            .map(|r| rest(socket, plug, [shift[0] + r * dx, shift[1] + r * dy], NOWHERE));
-        f64::from(path.fold(-NOWHERE, f32::max)) - z
+        let shifts = (1..=reach).map(|r| [shift[0] + r * dx, shift[1] + r * dy]);
+        let rests = shifts.map(|at| (rest(socket, plug, at, NOWHERE), at));
+        rests.fold((-NOWHERE, shift), |high, next| if next.0 > high.0 { next } else { high })
     };
-    SIDES.map(side).into_iter().fold(f64::INFINITY, f64::min).max(0.0)
+    let sides = SIDES.map(side).into_iter();
+    sides.fold((NOWHERE, shift), |low, next| if next.0 < low.0 { next } else { low })
 }
 
 /// Refines seats into poses, the best first.
@@ -168,7 +173,7 @@ fn estimated(scene: &Scene, seats: &[CoarseSeat], max_play: f64) -> Vec<Pose> {
             let (z, through) = seated(z, socket, plug);
             let [walls, penalty] = sides[turn].areas(&faces[out], &lower[turn][0], cells, z as f32);
             let shift = cells.map(|cell| f64::from(cell) * step);
-            Pose { out, turn, shift, z, through, walls, penalty, depth }
+            Pose { out, turn, shift, z, through, walls, penalty, depth, nose: 0.0 }
         });
         poses.max_by(|a, b| a.walls.total_cmp(&b.walls))
     };
@@ -248,15 +253,18 @@ impl Fine {
         best.map(|best| self.with_depth(best))
     }
 
-    /// Returns the pose with its depth.
+    /// Returns the pose with its depth and the length of its nose.
     fn with_depth(&self, pose: Pose) -> Pose {
         let shift = self.cells(&pose);
         let overlap = self.interference(&pose);
         let side = ((self.max_play + 2.0 * overlap) / self.step).ceil() as i32;
         let free = (overlap / self.step).ceil() as usize;
         let (s, p) = (self.upper.eroded(free / 2), self.tight.eroded(free - free / 2));
-        let depth = lift(&s, &p, shift, pose.z, side);
-        Pose { depth, ..pose }
+        let (height, at) = freed(&s, &p, shift, side);
+        let depth = (f64::from(height) - pose.z).max(0.0);
+        let met = highest_touching([&s, &p], at, height - LEVEL);
+        let nose = (f64::from(met) - self.heights[1][0]).max(0.0);
+        Pose { depth, nose, ..pose }
     }
 
     /// Returns the shift near `about` with the lowest resting height and, among equal ones, the largest facing area;

@@ -103,6 +103,22 @@ fn peg_rests_in_its_hole() {
     assert!(!mate.through, "{mate:?}");
 }
 
+/// A nose of 3 mm, with 2 mm of play, ahead of the body.
+#[test]
+fn a_narrower_nose_is_ahead_of_the_part_that_engages() {
+    let nose = block([0.0; 2], [12.0, 5.0], [-12.0, -9.0]);
+    let body = block([0.0; 2], [16.0, 7.0], [-9.0, 10.0]);
+    let plug = [nose, body, block([0.0; 2], [20.0, 11.0], [10.0, 14.0])].concat();
+    let socket = tube([0.0; 2], [24.0, 14.0], [16.2, 7.3], [-12.0, 4.0]);
+    let floor = block([0.0; 2], [24.0, 14.0], [-14.0, -12.0]);
+    let (mate, _) = found(&plug, &[socket, floor].concat(), 4);
+    close(&mate, [0.0, 0.0, -12.0], [0.2, 0.3]);
+    assert!((mate.nose_m - 3.0 * MM).abs() < CLOSE, "{mate:?}");
+    assert!((mate.depth_m() - 16.0 * MM).abs() < CLOSE, "{mate:?}");
+    let (mate, _) = found(&peg([3.0, 2.0]), &hole([6.0, 5.0], [3.1, 2.16], 4.0), 5);
+    assert!(mate.nose_m < CLOSE, "{mate:?}");
+}
+
 #[test]
 fn plug_goes_round_a_post() {
     let socket =

@@ -207,7 +207,8 @@ mod tests {
             drawn: [&plug, &socket],
             out: Vector3::z(),
             jaws: &jaws,
-            engaged: 5.0 * MM,
+            depth: 5.0 * MM,
+            nose: 0.0,
             play,
         };
         let made = task(&pair, "tube", None, None);

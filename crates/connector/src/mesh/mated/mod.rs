@@ -43,7 +43,9 @@ pub struct Pair<'a> {
     /// Directions perpendicular to `out` along which the jaws may close, the preferred one first.
     pub jaws: &'a [Vector3<f64>],
     /// Depth of the plug's tip below the socket's opening, m.
-    pub engaged: f64,
+    pub depth: f64,
+    /// Length of the plug's tip that enters the opening without being guided, m.
+    pub nose: f64,
     /// Two directions perpendicular to `out`, and the total play along each, m.
     pub play: [(Vector3<f64>, f64); 2],
 }
@@ -110,7 +112,7 @@ impl AlignedPair {
             pair.play.iter().find(along).map_or(0.0, |(_, play)| *play)
         });
         let own = Vector3::new(-x, -y, -low);
-        let task = own - Vector3::z() * pair.engaged;
+        let task = own - Vector3::z() * pair.depth;
         AlignedPair {
             plug: turned(pair.plug, own),
             socket: turned(pair.socket, task),
@@ -126,12 +128,12 @@ impl AlignedPair {
 /// of this size, else by its own faces if possible.
 pub fn task(pair: &Pair, name: &str, like: Option<&Task>, size: Option<[f64; 3]>) -> PairTask {
     // Rounded to the grid of files, so that corners stay on it.
-    let pair = &Pair { engaged: snap(pair.engaged), ..*pair };
+    let pair = &Pair { depth: snap(pair.depth), ..*pair };
     let first = pair.jaws.first().copied().unwrap_or_else(Vector3::y);
     let top = |placed: &AlignedPair| extent(placed.socket.iter().flatten(), 2)[1];
     let held = |jaws: &Vector3<f64>| {
         let placed = AlignedPair::new(pair, *jaws);
-        let (grasp, larger) = grip::own(&placed.plug, pair.engaged + top(&placed).max(0.0));
+        let (grasp, larger) = grip::own(&placed.plug, pair.depth + top(&placed).max(0.0));
         (placed, grasp, larger)
     };
     let axes = if size.is_some() { &[] } else { pair.jaws };
@@ -149,18 +151,18 @@ pub fn task(pair: &Pair, name: &str, like: Option<&Task>, size: Option<[f64; 3]>
     let (placed, grasp) = own.unwrap_or_else(|| {
         let placed = AlignedPair::new(pair, first);
         let size = size.unwrap_or(HANDLE);
-        let grasp = grip::handle(&placed.plug, size, pair.engaged + top(&placed).max(0.0));
+        let grasp = grip::handle(&placed.plug, size, pair.depth + top(&placed).max(0.0));
         (placed, grasp)
     });
-    let (mut parts, deviation) = skins(&placed, pair.engaged);
+    let (mut parts, deviation) = skins(&placed, pair.depth);
     let tight = placed.play.iter().any(|play| *play < LEAST_PLAY);
-    let interference = overlap::cut(&mut parts, pair.engaged, tight);
+    let interference = overlap::cut(&mut parts, pair.depth, tight);
     let drawn = [&placed.drawn[0][..], &placed.drawn[1]];
     let ([plug, socket], play) = (&parts, placed.play);
-    let bodies = gaps::Bodies { drawn, parts: [plug, socket], depth: pair.engaged, play };
+    let bodies = gaps::Bodies { drawn, parts: [plug, socket], depth: pair.depth, play };
     let difference =
         if deviation.is_some() { None } else { gaps::difference(&bodies, &interference) };
-    let mated = Pose::translation(0.0, 0.0, -pair.engaged);
+    let mated = Pose::translation(0.0, 0.0, -pair.depth);
     let place = deviation.map(|(_, off)| (mated, off.place));
     let place = place.or(difference.map(|off| (off.pose, off.place)));
     let closeup = place.map(|(pose, place)| closeup::svg(&bodies, &pose, place));
@@ -170,9 +172,9 @@ pub fn task(pair: &Pair, name: &str, like: Option<&Task>, size: Option<[f64; 3]>
     task.plug.mass = draft::DENSITY * volume(&placed.plug).max(geometry::volume(&grasp.part.solid));
     (task.plug.parts, task.socket) = (plug, socket);
     let play = placed.play.map(|play| play.max(LEAST_PLAY));
-    task.opening = opening(&placed.plug, pair.engaged, play);
+    task.opening = opening(&placed.plug, pair.depth, play);
     (task.grip.shoulder_z, task.grip.faces_y) = (grasp.shoulder, grasp.faces);
-    let mut task = plan::mated(task, pair.engaged, play);
+    let mut task = plan::mated(task, pair.depth, pair.nose, play);
     let like = like.map(|like| plan::Family::Like(Box::new(like.clone())));
     if let Some(strategy) = like.and_then(|family| family.strategy_for(&task)) {
         task.strategy = strategy;

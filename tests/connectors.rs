@@ -346,7 +346,9 @@ fn depths_count_from_the_opening_of_a_plug_with_a_nose() {
     let z: f64 = start.trim_end_matches(']').rsplit(", ").next().unwrap().parse().unwrap();
     let low = start.replace(&format!("{z}]"), &format!("{}]", z - 3.0));
     let inside = folder.file("inside.toml", text.replace(start, &low));
-    optimize(&["task", "check", &inside]).fails(1, &["`approach` ends inside of the socket"]);
+    let checked = optimize(&["task", "check", &inside]);
+    checked.fails(2, &["1 problem"]);
+    assert!(checked.stdout.contains("`approach` ends inside of the socket"), "{}", checked.stdout);
 }
 
 /// Plate with two slots for a bar, the second 0.1 mm deeper.

@@ -125,6 +125,7 @@ pub fn blank(name: &str, like: Option<&Task>) -> Task {
         strategy: Strategy { tilt: 0.0, start: [0.0; 3], rule: StartRule::Given, phases: vec![] },
         success: Success::default(),
         limits: like.map_or(Limits::default(), |task| task.limits),
+        left_out: Default::default(),
         mating_force: None,
     }
 }

@@ -34,7 +34,10 @@ pub fn origin(top: f64) -> String {
 
 /// Returns the text of a separate file of the parts.
 pub fn parts_file(task: &Task) -> String {
-    parts("plug", &task.plug.parts) + &parts("socket", &task.socket)
+    let [plug, socket] = &task.left_out;
+    let bodies = [("plug.part", &task.plug.parts), ("socket.part", &task.socket)];
+    let left_out = [("plug.left_out", plug), ("socket.left_out", socket)];
+    bodies.into_iter().chain(left_out).map(|(key, of)| parts(key, of)).collect()
 }
 
 /// Returns the text of a task file.
@@ -50,9 +53,9 @@ pub fn task(task: &Task, notes: &Notes) -> String {
         None => [
             format!(
                 "# Convex parts, z counted from the tip upwards.\n{}",
-                parts("plug", &task.plug.parts)
+                parts("plug.part", &task.plug.parts) + &parts("plug.left_out", &task.left_out[0])
             ),
-            parts("socket", &task.socket),
+            parts("socket.part", &task.socket) + &parts("socket.left_out", &task.left_out[1]),
         ],
     };
     let [x, y] = task.opening.map(pair);
@@ -102,11 +105,11 @@ pub fn task(task: &Task, notes: &Notes) -> String {
     )
 }
 
-fn parts(body: &str, parts: &[Part]) -> String {
+fn parts(key: &str, parts: &[Part]) -> String {
     let written = |part: &Part| {
         let friction = part.friction.map(|friction| format!("friction = {friction:?}\n"));
         format!(
-            "[[{body}.part]]\nname = {}\n{}{}\n",
+            "[[{key}]]\nname = {}\n{}{}\n",
             text(&part.name),
             solid(&part.solid),
             friction.unwrap_or_default()
@@ -171,10 +174,15 @@ fn grip(task: &Task) -> String {
 pub fn strategy(strategy: &Strategy) -> String {
     let rule = if strategy.rule == StartRule::Taught { "start = \"taught\"\n" } else { "" };
     let phases: String = strategy.phases.iter().map(phase).collect();
+    let [tilt, start] = match strategy.tilt {
+        0.0 => ["Upright.", "The plug over its seat."],
+        _ => [
+            "Tilted about x: the tip's edge at -y is the lowest.",
+            "The tip's lower edge over the middle of the opening in y.",
+        ],
+    };
     format!(
-        "[strategy]\n# Tilted about x: the tip's edge at -y is the lowest.\ntilt_deg = {}\n\
-         # The grasp point (TCP): the tip's lower edge over the middle of the opening in y.\n\
-         start_mm = {}\n{rule}\n{phases}",
+        "[strategy]\n# {tilt}\ntilt_deg = {}\n# Grasp point (TCP). {start}\nstart_mm = {}\n{rule}\n{phases}",
         round(strategy.tilt / DEG, 100.0),
         list(strategy.start.iter().map(|&v| mm(v)))
     )

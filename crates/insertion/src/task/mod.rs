@@ -58,6 +58,9 @@ pub struct Task {
     pub success: Success,
     /// Loads that the connector withstands; no trial depends on them.
     pub limits: Limits,
+    /// Parts of plug and of socket that do not collide, since the drawing shows them where the other body is: contact
+    /// springs, for example.
+    pub left_out: [Vec<Part>; 2],
     /// Force of the contact springs, if the file gives it.
     pub mating_force: Option<MatingForce>,
 }

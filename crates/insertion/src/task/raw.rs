@@ -6,7 +6,7 @@ use super::mating_force::{RawMatingForce, mating_force};
 use super::parts_file::PartsFile;
 use super::raw_part::{RawPart, interval, parts};
 use super::{
-    Ending, Friction, Grip, Limits, PadTorsion, Phase, Plug, Stage, Strategy, Success, Task,
+    Ending, Friction, Grip, Limits, PadTorsion, Part, Phase, Plug, Stage, Strategy, Success, Task,
     TouchDetection,
 };
 use input::units::MM;
@@ -45,6 +45,8 @@ struct RawPlug {
     mass: f64,
     #[serde(default)]
     part: Vec<RawPart>,
+    #[serde(default)]
+    left_out: Vec<RawPart>,
     latch: Option<RawLatch>,
 }
 
@@ -57,6 +59,8 @@ struct RawSocket {
     opening_y: [f64; 2],
     #[serde(default)]
     part: Vec<RawPart>,
+    #[serde(default)]
+    left_out: Vec<RawPart>,
 }
 
 #[derive(Deserialize)]
@@ -136,7 +140,7 @@ pub fn checked_name(name: &str) -> Result<String, &'static str> {
 
 /// Converts a task whose numbers have been checked by [`numbers::check_file`].
 fn convert(raw: RawTask, file: &str) -> Result<Task, InputError> {
-    let (check, RawSocket { opening_x, opening_y, part }) = (Check { file }, raw.socket);
+    let (check, RawSocket { opening_x, opening_y, part, left_out }) = (Check { file }, raw.socket);
     if let Err(problem) = checked_name(&raw.name) {
         return check.fail("name", problem);
     }
@@ -168,8 +172,17 @@ fn convert(raw: RawTask, file: &str) -> Result<Task, InputError> {
         strategy,
         success: raw.success,
         limits,
+        left_out: [
+            drawn(check, "plug.left_out", raw.plug.left_out)?,
+            drawn(check, "socket.left_out", left_out)?,
+        ],
         mating_force: raw.mating_force.map(|raw| mating_force(check, raw)).transpose()?,
     })
+}
+
+/// Converts and checks parts that are only drawn, if there are any.
+fn drawn(check: Check<'_>, key: &str, left_out: Vec<RawPart>) -> Result<Vec<Part>, InputError> {
+    if left_out.is_empty() { Ok(Vec::new()) } else { parts(check, key, left_out) }
 }
 
 /// Checks that no phase is faster than the connector allows.

@@ -16,14 +16,17 @@ const MAX_FRAMES: f64 = 500.0;
 const JAW_MM: f64 = 45.0;
 
 /// Returns kind, key of the poses and shapes of each body; the socket does not move, finger 0 is at -y.
-fn bodies(film: &Film) -> [(&'static str, &'static str, Vec<Geom>); 5] {
+fn bodies(film: &Film) -> [(&'static str, &'static str, Vec<Geom>); 7] {
     let task = film.task;
+    let drawn = |body: usize| task.left_out[body].iter().map(|part| part.geom()).collect();
     let tip = |side| film.pad.geoms(film.task.grip.shoulder(), side);
     [
         ("socket", "socket", task.socket.iter().map(|part| part.geom()).collect()),
         ("plug", "plug", task.plug.rigid().map(|part| part.geom()).collect()),
         ("finger", "finger0", tip(-1.0)),
         ("finger", "finger1", tip(1.0)),
+        ("spring", "plug", drawn(0)),
+        ("spring", "socket", drawn(1)),
         ("plug", "latch", task.plug.latch_parts().map(|part| part.geom()).collect()),
     ]
 }

@@ -156,7 +156,7 @@ pub fn task(pair: &Pair, name: &str, like: Option<&Task>, size: Option<[f64; 3]>
     });
     let (mut parts, deviation) = skins(&placed, pair.depth);
     let tight = placed.play.iter().any(|play| *play < LEAST_PLAY);
-    let interference = overlap::cut(&mut parts, pair.depth, tight);
+    let (interference, left_out) = overlap::cut(&mut parts, pair.depth, tight);
     let drawn = [&placed.drawn[0][..], &placed.drawn[1]];
     let ([plug, socket], play) = (&parts, placed.play);
     let bodies = gaps::Bodies { drawn, parts: [plug, socket], depth: pair.depth, play };
@@ -170,7 +170,7 @@ pub fn task(pair: &Pair, name: &str, like: Option<&Task>, size: Option<[f64; 3]>
     plug.push(grasp.part.clone());
     let mut task = draft::blank(name, like);
     task.plug.mass = draft::DENSITY * volume(&placed.plug).max(geometry::volume(&grasp.part.solid));
-    (task.plug.parts, task.socket) = (plug, socket);
+    (task.plug.parts, task.socket, task.left_out) = (plug, socket, left_out);
     let play = placed.play.map(|play| play.max(LEAST_PLAY));
     task.opening = opening(&placed.plug, pair.depth, play);
     (task.grip.shoulder_z, task.grip.faces_y) = (grasp.shoulder, grasp.faces);

@@ -54,16 +54,26 @@ impl Interference {
 
 /// Removes the interference of plug and socket on the way to the mated pose, `depth` below the top, m: of two parts
 /// that overlap deeply the smaller one is left out, and faces that overlap sideways by no more than a press fit are
-/// cut back, as are those of a `tight` fit, which is drawn without play.
-pub fn cut(bodies: &mut [Vec<Part>; 2], depth: f64, tight: bool) -> Vec<Interference> {
-    let mut gone = leave_out(bodies, depth, FIT);
+/// cut back, as are those of a `tight` fit, which is drawn without play. Also returns the parts left out of each body.
+pub fn cut(
+    bodies: &mut [Vec<Part>; 2],
+    depth: f64,
+    tight: bool,
+) -> (Vec<Interference>, [Vec<Part>; 2]) {
+    let mut out = [Vec::new(), Vec::new()];
+    let mut gone = leave_out(bodies, depth, FIT, &mut out);
     gone.extend(cut_back(bodies, depth, tight));
-    gone.extend(leave_out(bodies, depth, ROUNDING));
-    gone
+    gone.extend(leave_out(bodies, depth, ROUNDING, &mut out));
+    (gone, out)
 }
 
-/// Leaves out the smaller of two parts that overlap by more than `least`, m.
-fn leave_out(bodies: &mut [Vec<Part>; 2], depth: f64, least: f64) -> Vec<Interference> {
+/// Moves the smaller of two parts that overlap by more than `least`, m, to the parts left out.
+fn leave_out(
+    bodies: &mut [Vec<Part>; 2],
+    depth: f64,
+    least: f64,
+    left_out: &mut [Vec<Part>; 2],
+) -> Vec<Interference> {
     let volumes = bodies.each_ref().map(|parts| -> Vec<f64> {
         parts.iter().map(|part| geometry::volume(&part.solid)).collect()
     });
@@ -78,8 +88,9 @@ fn leave_out(bodies: &mut [Vec<Part>; 2], depth: f64, least: f64) -> Vec<Interfe
         let all = std::mem::take(parts).into_iter().zip(&out[body]);
         let (left, kept): (Vec<_>, Vec<_>) = all.partition(|(_, depth)| **depth > 0.0);
         *parts = kept.into_iter().map(|(part, _)| part).collect();
-        let left = left.into_iter().map(|(part, &deep)| (deep, part.solid)).collect();
-        gone.extend(grouped(left, body, false, depth));
+        let solids = left.iter().map(|(part, deep)| (**deep, part.solid.clone())).collect();
+        gone.extend(grouped(solids, body, false, depth));
+        left_out[body].extend(left.into_iter().map(|(part, _)| part));
     }
     gone
 }
@@ -230,14 +241,15 @@ pub(super) mod tests {
     fn a_press_fit_keeps_its_walls_and_a_spring_is_left_out() {
         let mut bodies = [vec![part([-0.32, -0.32, 0.0], [0.32, 0.32, 6.0])], hole()];
         let spring = part([-0.1, 0.1, -2.0], [0.1, 0.5, -1.5]);
-        bodies[1].push(spring);
-        let gone = cut(&mut bodies, 4.0 * MM, false);
+        bodies[1].push(spring.clone());
+        let (gone, left_out) = cut(&mut bodies, 4.0 * MM, false);
         assert_eq!(bodies.each_ref().map(Vec::len), [1, 6]);
         let sum = |cut_back| {
             let parts = gone.iter().filter(|of| of.body == 1 && of.cut_back == cut_back);
             parts.map(|of| of.parts).sum::<usize>()
         };
         assert_eq!((sum(true), sum(false)), (5, 1), "{gone:?}");
+        assert_eq!(left_out, [vec![], vec![spring]]);
         // Room to either side, the slope's lower edge included, and none beyond it.
         let [pin, hole] = bodies.each_ref().map(|parts| ConvexBody::new(parts));
         let deep = |x: f64, y: f64| {
@@ -256,7 +268,7 @@ pub(super) mod tests {
     fn a_crush_rib_moves_no_wall() {
         let rib = part([0.25, -0.05, 0.0], [0.36, 0.05, 5.0]);
         let mut bodies = [vec![part([-0.25, -0.25, 0.0], [0.25, 0.25, 6.0]), rib], hole()];
-        let gone = cut(&mut bodies, 4.0 * MM, false);
+        let (gone, _) = cut(&mut bodies, 4.0 * MM, false);
         let [plug, socket] = bodies;
         assert_eq!((socket, gone.len()), (hole(), 1), "{gone:?}");
         let [_, high] = extent(plug[1].solid.corners(), 0);
@@ -267,7 +279,7 @@ pub(super) mod tests {
     #[test]
     fn a_fit_without_play_gets_room() {
         let mut bodies = [vec![part([-0.3, -0.3, 0.0], [0.3, 0.3, 6.0])], hole()];
-        let gone = cut(&mut bodies, 4.0 * MM, true);
+        let (gone, _) = cut(&mut bodies, 4.0 * MM, true);
         assert!(gone.iter().all(|of| of.cut_back && of.depth < 1e-9), "{gone:?}");
         let [pin, hole] = bodies.each_ref().map(|parts| ConvexBody::new(parts));
         for [x, y] in [[-0.024, 0.0], [0.024, 0.0], [0.0, -0.024], [0.0, 0.024]] {
@@ -280,7 +292,7 @@ pub(super) mod tests {
     #[test]
     fn a_sliding_fit_stays_as_drawn() {
         let mut bodies = [vec![part([-0.3, -0.3, 0.0], [0.305, 0.3, 6.0])], hole()];
-        assert_eq!(cut(&mut bodies, 4.0 * MM, false), []);
+        assert_eq!(cut(&mut bodies, 4.0 * MM, false).0, []);
         assert_eq!(bodies[1], hole());
     }
 }

@@ -3,8 +3,8 @@
 use crate::failure::Failure;
 use crate::setup::run::THREADS;
 use clap::Command;
-use input::Place;
 use input::shipped::{MEASUREMENTS, Source};
+use input::{Place, RequestError};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
@@ -70,25 +70,21 @@ impl Project {
         let path = folder.join(PROJECT_FILE);
         let Source { file, text } = Source::read("project file", &path).map_err(Failure::input)?;
         let table: toml::Table = input::read(&text, &file).map_err(Failure::input)?;
-        if let Some(key) = OF_STUDY.iter().find(|key| table.contains_key(**key)) {
-            let problem = format!("{key}: belongs to one study; give --{key} on the command line");
-            return Err(Failure::in_file(&file, problem));
+        let mut project = Project { file, text, settings: Settings::default() };
+        let fault = |(key, value): (&String, _)| Some(project.fault(key, key_problem(key, value)?));
+        let mut faults: Vec<Failure> = table.iter().filter_map(fault).collect();
+        faults.sort_by_key(|fault| fault.place().line);
+        if let Some(first) = faults.first() {
+            let text = faults.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n");
+            return Err(Failure::input(RequestError { place: first.place(), text }));
         }
-        let mut settings: Settings = input::read(&text, &file).map_err(Failure::input)?;
-        let Settings { task, robot, cell, measurements, space, .. } = &mut settings;
+        project.settings = input::read(&project.text, &project.file).map_err(Failure::input)?;
+        let Settings { task, robot, cell, measurements, space, .. } = &mut project.settings;
         for value in [task, robot, cell, measurements, space].into_iter().flatten() {
             let each = value.split(',').map(|name| beside(folder, name.trim()));
             *value = each.collect::<Vec<_>>().join(",");
         }
-        let project = Project { file, text, settings };
-        match project.settings.threads {
-            Some(count) if !THREADS.contains(&i64::from(count)) => {
-                let (least, most) = (THREADS.start(), THREADS.end());
-                let problem = format!("{count}: must lie between {least} and {most}");
-                Err(project.fault("threads", problem))
-            }
-            _ => Ok(project),
-        }
+        Ok(project)
     }
 
     /// Returns the error of the value of a key.
@@ -172,6 +168,22 @@ impl Project {
             words.insert(0, format!("sets {}", set.collect::<Vec<_>>().join(", ")));
         }
         Ok((options, words.join("; ")))
+    }
+}
+
+/// Returns the problem of a key or its value.
+fn key_problem(key: &str, value: &toml::Value) -> Option<String> {
+    if OF_STUDY.contains(&key) {
+        return Some(format!("belongs to one study; give --{key} on the command line"));
+    }
+    let alone = toml::Table::from_iter([(key.to_owned(), value.clone())]);
+    let (least, most) = (THREADS.start(), THREADS.end());
+    match alone.try_into() {
+        Err(error) => Some(input::syntax("", "", &error).problem),
+        Ok(Settings { threads: Some(count), .. }) if !THREADS.contains(&i64::from(count)) => {
+            Some(format!("{count}: must lie between {least} and {most}"))
+        }
+        Ok(_) => None,
     }
 }
 

@@ -248,18 +248,19 @@ fn the_project_file_gives_defaults_that_options_precede() {
     lines("lab", "config").says(&["rigid                    (finger-opt.toml; not used: the cell"]);
     let next = lines("lab", "next --engine fake --no-cache --simulations 16 --samples 20").stderr;
     assert!(next.contains("sets task usb, priors cell.toml, measurements bench.csv"), "{next}");
-    studies.file("lab/finger-opt.toml", "seed = 3\n");
-    lines("lab", "config")
-        .fails(2, &["finger-opt.toml", "seed: belongs to one study; give --seed"]);
+    let four = "tasks = \"usb\"\nthreads = 9999\nseed = 3\nrobot = 3\n";
+    studies.file("lab/finger-opt.toml", four);
+    for line in [study, "config"] {
+        let problems = [
+            "finger-opt.toml: line 1: tasks: unknown field",
+            "finger-opt.toml: line 2: threads: 9999: must lie between 1 and 1024",
+            "finger-opt.toml: line 3: seed: belongs to one study; give --seed",
+            "finger-opt.toml: line 4: robot: invalid type",
+        ];
+        lines("lab", line).fails(2, &problems);
+    }
     studies.file("lab/finger-opt.toml", "task = \"usb,kett\"\n");
     lines("lab", "config").fails(2, &["finger-opt.toml: ", "`kett`", "ket8, ket12, rj45, usb"]);
-    studies.file("lab/finger-opt.toml", "task = \"usb\"\nthreads = 9999\n");
-    for line in [study, "config"] {
-        let problem = "finger-opt.toml: line 2: threads: 9999: must lie between 1 and 1024";
-        lines("lab", line).fails(2, &[problem]);
-    }
-    studies.file("lab/finger-opt.toml", "tasks = \"usb\"\n");
-    lines("lab", study).fails(2, &["finger-opt.toml", "tasks"]);
 }
 
 #[test]

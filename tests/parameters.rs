@@ -32,6 +32,8 @@ fn an_unknown_path_is_refused_in_every_file_and_option_with_file_line_and_the_ne
     let near_tilt = "did you mean `task.strategy.tilt_deg`?";
     studies.study("s", 4, &["--space", &space]).fails(2, &["space.toml", "line", near_tilt]);
     fake(&format!("{EVALUATE} --set task.friction.plug_sokcet=0.2")).fails(2, &[near]);
+    let short = "did you mean `task.plug.mass_g`?";
+    fake(&format!("{EVALUATE} --set plug.mas=3")).fails(2, &[short]);
     let shape =
         "finger --density 20 --direction 10 --finger finray9 --set finger.skin.thicknes_mm=0.5";
     optimize_line(shape).fails(2, &["did you mean `finger.skin.thickness_mm`?"]);

@@ -2,7 +2,7 @@
 
 use crate::common::shipped::{finger, rig};
 use crate::common::{Ran, Studies, optimize, optimize_line};
-use connector::check::problems;
+use connector::check::{Problem, problems};
 use connector::draft::{Dimensions, Size, draft};
 use connector::mesh::{Body, Surface, pick, read};
 use connector::nominal::explain;
@@ -131,9 +131,9 @@ fn each_fault_is_caught_with_its_key_and_what_would_be_right() {
         (start, "[0.0, -1.2, 35.0]", "strategy.start_mm", "deep in", "z = 46.03"),
         (approach, "[-2.6, 0.0, -12.8]", "\"approach\" move_mm", "runs into", "z = -8.97"),
         (start, "[0.0, 22.2, 51.0]", "strategy.start_mm", "in y", "y = -1.13"),
-        (start, "[22.0, -1.2, 51.0]", "strategy.start_mm", "in x", "x = 0.06"),
+        (start, "[22.0, -1.2, 51.0]", "strategy.start_mm", "from 19.4 to 24.4 mm in x", "x = 0.1"),
         (neck, "[33.2, 39.96]", "part \"taper\"", "3 mm deep in `neck`", "end where they meet"),
-        (neck, "[36.2, 36.2015]", "\"neck\" z_mm", "no mass", "thickness"),
+        (neck, "[36.2, 36.2015]", "\"neck\" z_mm", "0.0015 mm is less", "1.50 mm"),
         ("mass_g = 5.0", "0.005", "plug.mass_g", "less than foam", "plastic"),
         (slip, "5.0", "grip.slip_limit_mm", "3.35 mm", "at most 3.0"),
     ] {
@@ -161,6 +161,58 @@ fn a_field_of_a_wrong_type_is_named_with_its_value() {
         said(&fields)
             .starts_with("mine: strategy.phase.speed_mm_per_s: invalid type: boolean `true`")
     );
+}
+
+/// Returns the only problem of the usb task with one passage replaced: key, problem and remedy.
+fn only_problem(from: &str, to: &str) -> [String; 3] {
+    let mut found = problems(&changed(USB, from, to).unwrap());
+    assert_eq!(found.len(), 1, "{to}: {found:#?}");
+    let Problem { key, problem, remedy } = found.remove(0);
+    [key, problem, remedy]
+}
+
+#[test]
+fn a_wrong_unit_of_one_number_is_the_only_problem() {
+    let (shell, metres) = ("x_mm = [-2.29, 2.19]", "multiply by 1000: 4.48 mm");
+    for (from, to, at, problem, remedy) in [
+        (
+            shell,
+            "x_mm = [-0.00229, 0.00219]",
+            "\"metal shell\" x_mm",
+            "is 0.004 mm wide in x, but the opening is 7.55 mm wide",
+            metres,
+        ),
+        (
+            shell,
+            "x_mm = [-0.09, 0.09]",
+            "\"metal shell\" x_mm",
+            "is 0.18 mm wide in x",
+            "inches, multiply by 25.4: 4.57 mm",
+        ),
+        ("tilt_deg = 10.0", "tilt_deg = 0.17", "strategy.tilt_deg", "radians?", "9.7 degrees"),
+        ("tilt_deg = 10.0", "tilt_deg = -0.17", "strategy.tilt_deg", "radians?", "-9.7 degrees"),
+        ("tilt_deg = 4.0", "tilt_deg = 0.05", "success.tilt_deg", "0.05 degrees", "2.9 degrees"),
+    ] {
+        let found = only_problem(from, to);
+        let parts = found.iter().zip([at, problem, remedy]);
+        assert!(parts.clone().all(|(text, part)| text.contains(part)), "{to}: {found:?}");
+    }
+    for (from, to) in [("tilt_deg = 4.0", "tilt_deg = 0.3"), (shell, "x_mm = [-0.25, 0.25]")] {
+        assert_eq!(problems(&changed(USB, from, to).unwrap()), [], "{to}");
+    }
+}
+
+#[test]
+fn a_success_depth_beyond_the_plug_is_the_only_problem() {
+    for (depth_mm, problem) in [
+        ("60.0", "is 60 mm; the plug, 50.7 mm long, stops 12.57 mm below the top"),
+        ("30.0", "is 30 mm; the plug, 50.7 mm long, stops 12.57 mm below the top"),
+        ("16.0", "is 16 mm; the plug, 50.7 mm long, stops 12.57 mm below the top"),
+    ] {
+        let found = only_problem("depth_mm = 12.0", &format!("depth_mm = {depth_mm}"));
+        assert_eq!(found[0], "success.depth_mm");
+        assert!(found[1].starts_with(problem) && found[2].starts_with("at most 12"), "{found:?}");
+    }
 }
 
 /// The file in another unit: nothing but that is said.

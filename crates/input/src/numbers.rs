@@ -1,6 +1,7 @@
 //! TOML files whose numbers a design may set by path.
 
 use crate::shipped::nearest;
+use crate::units::without_unit;
 use crate::{Check, Document, InputError};
 use std::collections::BTreeSet;
 use toml::{Table, Value};
@@ -103,10 +104,20 @@ fn numbers<'a>(path: &str, value: &'a mut Value) -> Vec<(String, &'a mut Value)>
     }
 }
 
+/// Returns the nearest path; `path` may lack its first word, `task`, and the unit.
+fn nearest_path<'a>(path: &str, paths: &[&'a str]) -> Option<&'a str> {
+    let unitless = paths.iter().map(|path| without_unit(path).0);
+    let mut forms: Vec<&str> = paths.iter().copied().chain(unitless).collect();
+    let bare = |form: &&'a str| form.strip_prefix("task.").unwrap_or(form);
+    forms.extend(forms.iter().map(bare).collect::<Vec<_>>());
+    let near = nearest(path, &forms)?;
+    forms.iter().position(|form| *form == near).map(|i| paths[i % paths.len()])
+}
+
 /// Returns the error message for a path that is not in `paths`: the nearest path, and the words that can follow its
 /// longest known prefix.
 pub fn unknown_path(path: &str, paths: &[&str]) -> String {
-    let near = nearest(path, paths).map(|near| format!("; did you mean `{near}`?"));
+    let near = nearest_path(path, paths).map(|near| format!("; did you mean `{near}`?"));
     let hint = near.as_deref().unwrap_or(";");
     let unknown = format!("unknown path `{path}`");
     let mut end = path.len();

@@ -19,6 +19,28 @@ pub const GRAM: f64 = 1e-3;
 /// One percent, as a fraction.
 pub const PERCENT: f64 = 0.01;
 
+/// Suffixes of names and their units in labels, which omit others. A suffix precedes its own endings: `_n_per_mm`, then
+/// `_mm`.
+const SUFFIXES: [(&str, &str); 11] = [
+    ("_gpa", " GPa"),
+    ("_percent", " %"),
+    ("_deg", "°"),
+    ("_mm_per_s", " mm/s"),
+    ("_n_per_mm", " N/mm"),
+    ("_nm_per_rad", " N m/rad"),
+    ("_mm", " mm"),
+    ("_n", " N"),
+    ("_kg", " kg"),
+    ("_g", " g"),
+    ("_s", " s"),
+];
+
+/// Splits the unit, as in labels, off the end of a name.
+pub fn without_unit(name: &str) -> (&str, &'static str) {
+    let split = |(end, unit): &(&str, &'static str)| Some((name.strip_suffix(end)?, *unit));
+    SUFFIXES.iter().find_map(split).unwrap_or((name, ""))
+}
+
 /// Number, or array, `Vec` or `Option` of numbers, that a factor converts to another unit.
 pub trait Quantity<'de>: Deserialize<'de> {
     /// Multiplies all numbers by a factor.

@@ -2,6 +2,7 @@
 
 use crate::numbers::{Kind, NUMBERS, NumberSpec};
 use input::numbers::unknown_path;
+use input::units::without_unit;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::ops::Deref;
@@ -22,7 +23,10 @@ impl Path {
     /// If it is not in the table; the message suggests the closest match.
     pub fn new(text: impl Into<String>) -> Result<Self, String> {
         let text = text.into();
-        let words: Vec<&str> = text.split('.').collect();
+        // The names in a path of which only `task` is missing are those of its suggestion.
+        let in_task = ["plug.", "socket.", "strategy."].iter().any(|table| text.starts_with(table));
+        let whole = if in_task { format!("task.{text}") } else { text.clone() };
+        let words: Vec<&str> = whole.split('.').collect();
         let variable = NUMBERS.iter().filter(|number| number.kind != Kind::Fixed);
         let all = variable.flat_map(|number| number.paths().into_iter().map(move |p| (p, number)));
         let known: Vec<_> = all.map(|(path, number)| (filled(&path, &words), number)).collect();
@@ -98,20 +102,6 @@ impl<T: AsRef<str> + ?Sized> PartialEq<T> for Path {
     }
 }
 
-/// Suffixes of words and their units in labels, which omit others. A suffix precedes its own endings: `_n_per_mm`, then
-/// `_mm`.
-const UNITS: [(&str, &str); 10] = [
-    ("_gpa", " GPa"),
-    ("_percent", " %"),
-    ("_deg", "°"),
-    ("_mm_per_s", " mm/s"),
-    ("_n_per_mm", " N/mm"),
-    ("_nm_per_rad", " N m/rad"),
-    ("_mm", " mm"),
-    ("_n", " N"),
-    ("_kg", " kg"),
-    ("_s", " s"),
-];
 /// Words of a path that labels omit.
 const TABLES: [&str; 5] = ["task", "strategy", "phase", "grip", "finger"];
 
@@ -120,12 +110,11 @@ pub fn label(path: &str) -> (String, &'static str) {
     let mut unit = "";
     let mut words = Vec::new();
     for part in path.split('.').filter(|part| !TABLES.contains(part)) {
-        let suffix = || UNITS.iter().find_map(|(end, unit)| Some((part.strip_suffix(end)?, *unit)));
         let (word, of) = match part {
             // Of `rcc_mm`, over the infill direction.
             "at_0_deg" => (part, ""),
             "per_deg" => (part, " mm/°"),
-            _ => suffix().unwrap_or((part, "")),
+            _ => without_unit(part),
         };
         unit = if of.is_empty() { unit } else { of };
         words.push(word.replace('_', " "));
@@ -188,6 +177,11 @@ mod tests {
             ),
             ("finger.skin.thick_mm", "`finger.skin.` continues with thickness_mm"),
             ("robot.mass", "did you mean `robot.mass_kg`?"),
+            ("plug.mas", "did you mean `task.plug.mass_g`?"),
+            ("task.plug.mas", "did you mean `task.plug.mass_g`?"),
+            ("friction.plug_sokcet", "did you mean `task.friction.plug_socket`?"),
+            ("strategy.phase.side.preload", "did you mean `task.strategy.phase.side.preload_mm`?"),
+            ("finger.rcc", "did you mean `finger.rcc_mm`?"),
             ("tilt", "a path begins with cell, finger, infill_density_percent,"),
             ("task.clearance_mm.x", "unknown path `task.clearance_mm.x`"),
             ("", "unknown path ``"),
@@ -214,6 +208,7 @@ mod tests {
             ("task.strategy.phase.side.move_mm.y", "side move y", " mm"),
             ("task.strategy.phase.assembly.speed_mm_per_s", "assembly speed", " mm/s"),
             ("task.grip.force_n", "force", " N"),
+            ("finger.mass_g", "mass", " g"),
             ("finger.rotation_x_nm_per_rad", "rotation x", " N m/rad"),
             ("task.opening.0", "opening 0", ""),
             ("task.finger.rcc_mm.at_0_deg", "rcc at 0 deg", " mm"),

@@ -4,13 +4,16 @@ mod grasp;
 mod parts;
 mod socket;
 mod strategy;
+mod units;
 
-pub use parts::FACES_MM;
+pub use units::FACES_MM;
+pub(crate) use units::LEAST_TILT_DEG;
 
+use super::body::{clipped, extent, width};
 use super::seat::TaskBodies;
 use input::InputError;
 use input::units::MM;
-use insertion::task::{Solid, Task};
+use insertion::task::{Part, Solid, Success, Task};
 use serde::Serialize;
 
 /// Fault of a task file.
@@ -48,9 +51,10 @@ impl From<&InputError> for Problem {
 
 /// Returns the faults of a task, causes before consequences.
 pub fn problems(task: &Task) -> Vec<Problem> {
-    let case = TaskBodies::new(task);
+    let reached;
+    let mut case = TaskBodies::new(task);
     // With a wrong unit, all other checks would fail too.
-    let mut found = parts::lengths(&case);
+    let mut found = units::problems(&case);
     if !found.is_empty() {
         return found;
     }
@@ -58,7 +62,14 @@ pub fn problems(task: &Task) -> Vec<Problem> {
     if task.success.mated.is_none() {
         found.extend(parts::problems(&case));
         found.extend(socket::walls(&case));
-        found.extend(socket::depth(&case, &case.deepest()));
+        let seat = case.deepest();
+        found.extend(socket::depth(&case, &seat));
+        // The checks below would name the consequences of a success depth that is too large.
+        if found.iter().any(|problem| problem.key == socket::DEPTH_KEY) {
+            let success = Success { depth: seat.depth, ..task.success };
+            reached = Task { success, ..task.clone() };
+            case = TaskBodies::new(&reached);
+        }
     }
     found.extend(parts::mass(&case));
     found.extend(grasp::problems(&case));
@@ -71,9 +82,24 @@ fn mm(length: f64) -> String {
     format!("{}", (length / MM * 100.0).round() / 100.0 + 0.0)
 }
 
-/// Returns an interval for a message, mm.
+/// Returns an interval as in a task file, mm.
 fn interval([from, to]: [f64; 2]) -> String {
     format!("[{}, {}]", mm(from), mm(to))
+}
+
+/// Returns an interval in words, mm.
+fn range(ends: [f64; 2]) -> String {
+    let [from, to] = ends.map(mm);
+    format!("from {from} to {to} mm")
+}
+
+/// Returns the key of the extent along an axis (0 x, 1 y) of the plug part that is widest below the socket's top.
+fn widest_key(case: &TaskBodies, depth: f64, axis: usize) -> Option<String> {
+    let below = |part: &Part| {
+        width(extent(clipped(&part.solid.corners(), 2, [f64::NEG_INFINITY, depth]), axis))
+    };
+    let part = case.plug.parts.iter().max_by(|a, b| below(a).total_cmp(&below(b)))?;
+    Some(part_key("plug", &part.name, field(&part.solid, axis)))
 }
 
 /// Returns the key of a part, or of one of its fields.

@@ -1,10 +1,9 @@
 //! Opening, walls and depth of insertion.
 
-use super::{Problem, TaskBodies, field, interval, mm, part_key};
-use crate::body::{clipped, extent, width};
+use super::{Problem, TaskBodies, mm, range, widest_key};
+use crate::body::width;
 use crate::seat::{Seat, section};
 use input::units::MM;
-use insertion::task::Part;
 use nalgebra::Point3;
 
 /// Depth below the top at which walls are searched for, m.
@@ -21,6 +20,11 @@ const STEP: f64 = 0.0025 * MM;
 const DEPTH_STEP: f64 = 0.25 * MM;
 /// Compression of the contacts, by which the success depth may exceed the depth of the seat, m.
 const COMPRESSION: f64 = 0.02 * MM;
+
+/// Depth to which a plug that is too wide may enter a chamfered opening, m.
+const ENTERED: f64 = 3.0 * MM;
+/// Key of the success depth.
+pub(super) const DEPTH_KEY: &str = "success.depth_mm";
 
 /// Checks the sides of the opening and the height of the socket.
 pub(super) fn walls(case: &TaskBodies) -> Vec<Problem> {
@@ -110,11 +114,11 @@ pub(super) fn depth(case: &TaskBodies, seat: &Seat) -> Vec<Problem> {
     let by = seat.stopped_by.map_or(String::new(), |[plug, socket]| {
         format!(": `{}` meets `{}`", case.plug.parts[plug].name, case.socket.parts[socket].name)
     });
-    let [_, top] = case.plug.extent(2);
-    let (required, stops) = (mm(success), mm(seat.depth.min(top)));
+    let [bottom, top] = case.plug.extent(2);
+    let [required, length, stops] = [success, top - bottom, seat.depth.min(top)].map(mm);
     vec![Problem::new(
-        "success.depth_mm",
-        format!("is {required} mm, but the plug stops {stops} mm below the top{by}"),
+        DEPTH_KEY,
+        format!("is {required} mm; the plug, {length} mm long, stops {stops} mm below the top{by}"),
         format!("at most {:.1} mm; less, if the plug may stay tilted", (0.96 * seat.depth / MM)),
     )]
 }
@@ -124,19 +128,15 @@ fn too_wide(case: &TaskBodies, seat: &Seat, axis: usize) -> Option<Problem> {
     // A shoulder that rests on the housing is not meant to go in.
     let depth = case.task.success.depth.min(seat.depth + BELOW);
     let (plug, opening) = (section(&case.plug, depth)[axis], case.task.opening[axis]);
-    if width(plug) <= width(opening) || seat.depth > case.task.success.depth / 2.0 {
+    if width(plug) <= width(opening) || seat.depth > ENTERED.min(case.task.success.depth / 2.0) {
         return None;
     }
-    let below = |part: &Part| {
-        width(extent(clipped(&part.solid.corners(), 2, [f64::NEG_INFINITY, depth]), axis))
-    };
-    let part = case.plug.parts.iter().max_by(|a, b| below(a).total_cmp(&below(b)))?;
-    let (name, has, range) = (["x", "y"][axis], mm(width(opening)), interval(opening));
+    let (name, has, ends) = (["x", "y"][axis], mm(width(opening)), range(opening));
     let wide = mm(width(plug));
     Some(Problem::new(
-        part_key("plug", &part.name, field(&part.solid, axis)),
+        widest_key(case, depth, axis)?,
         format!(
-            "the plug is {wide} mm wide in {name} where the opening is {has} mm wide ({range}): it cannot enter"
+            "the plug is {wide} mm wide in {name} where the opening is {has} mm wide ({ends}): it cannot enter"
         ),
         format!("make it narrower than {has} mm, or widen socket.opening_{name}_mm and its walls"),
     ))

@@ -1,6 +1,6 @@
 //! Checks of the commanded moves: free approach, search over the opening, deep enough push.
 
-use super::{Problem, TaskBodies, interval, mm};
+use super::{Problem, TaskBodies, mm, range};
 use crate::body::{Overlap, span, width};
 use crate::seat::{self, Waypoint, section};
 use input::units::MM;
@@ -142,28 +142,26 @@ fn missed_opening(case: &TaskBodies, way: &[Waypoint]) -> Option<Problem> {
     let search: Vec<_> =
         way[first.max(1) - 1..].iter().filter(|point| point.stage != Stage::Assembly).collect();
     let [x, y] = case.task.opening;
-    let [left, right] = span(search.iter().map(|point| point.tcp.x));
+    let over = span(search.iter().map(|point| point.tcp.x));
     let fits = [x[0] - tip[0][0], x[1] - tip[0][1]];
-    if right < fits[0].min(fits[1]) || left > fits[0].max(fits[1]) {
-        let [at, open] = [[left, right], fits].map(interval);
-        return Some(Problem::new(
-            "strategy.start_mm",
-            format!("in x the plug is commanded to {at} mm, but the opening is reached at {open}"),
-            format!("x = {} mm, or longer moves along x", mm((fits[0] + fits[1]) / 2.0)),
-        ));
-    }
-    let [low, high] = span(search.iter().map(|point| point.edge.y));
-    if high < y[0] || low > y[1] {
-        let correct = way[0].tcp.y + (y[0] + y[1]) / 2.0 - way[0].edge.y;
-        let at = interval([low, high]);
-        return Some(Problem::new(
-            "strategy.start_mm",
-            format!(
-                "in y the tip's lower edge is commanded to {at} mm, but the opening is at {}",
-                interval(y)
-            ),
-            format!("y = {} mm puts it over the opening's middle", mm(correct)),
-        ));
-    }
-    None
+    let fits = [fits[0].min(fits[1]), fits[0].max(fits[1])];
+    let low = span(search.iter().map(|point| point.edge.y));
+    let middle = |[low, high]: [f64; 2]| (low + high) / 2.0;
+    // The search begins with the lower edge over the middle.
+    let axes = [
+        ("the plug", over, fits, middle(over)),
+        ("the tip's lower edge", low, y, search.first()?.edge.y),
+    ];
+    let (axis, (body, moved, open, at)) = axes
+        .into_iter()
+        .enumerate()
+        .find(|(_, (_, moved, open, _))| moved[1] < open[0] || moved[0] > open[1])?;
+    let name = ["x", "y"][axis];
+    let correct = mm(way[0].tcp[axis] + middle(open) - at);
+    let [moved, open] = [moved, open].map(range);
+    Some(Problem::new(
+        "strategy.start_mm",
+        format!("the search moves {body} {moved} in {name}; it is over the opening only {open}"),
+        format!("{name} = {correct} mm, or other moves: the search must pass over the opening"),
+    ))
 }

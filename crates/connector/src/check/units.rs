@@ -1,0 +1,117 @@
+//! Checks of the units of a task file: lengths in mm, angles in degrees.
+
+use super::{Problem, TaskBodies, part_key, widest_key};
+use crate::body::{longest_side, width};
+use crate::seat::section;
+use input::units::{DEG, MM, mm};
+use insertion::task::Ending;
+use nalgebra::Vector3;
+
+/// Range of widths between the jaws, mm: that of grippers in assembly cells, with a margin.
+pub const FACES_MM: [f64; 2] = [1.0, 100.0];
+
+/// Units mistaken for millimetres, in mm.
+const UNITS: [(&str, f64); 4] =
+    [("metres", 1000.0), ("inches", 25.4), ("micrometres", 0.001), ("centimetres", 10.0)];
+
+/// Smallest plausible widths of a plug as shares of its opening: in both directions, and in one. Shipped tasks have at
+/// least 0.6, a flat pin in a round hole 0.1.
+const LEAST_SHARE: [f64; 2] = [1.0 / 8.0, 1.0 / 20.0];
+/// Smallest plausible tilt except 0, degrees. Smaller numbers are angles up to 15 degrees, in radians.
+pub const LEAST_TILT_DEG: f64 = 0.27;
+
+/// Checks lengths and angles for a wrong unit.
+pub(super) fn problems(case: &TaskBodies) -> Vec<Problem> {
+    let (task, grip) = (case.task, &case.task.grip);
+    let keys = [
+        ("plug.part", width(case.plug.extent(2)), [8.0, 300.0]),
+        ("socket.opening_x_mm", width(task.opening[0]), [0.5, 300.0]),
+        ("socket.opening_y_mm", width(task.opening[1]), [0.5, 300.0]),
+        ("grip.tcp_z_mm", grip.tcp_z, [3.0, 300.0]),
+        ("grip.shoulder_z_mm", grip.shoulder_z, [3.0, 300.0]),
+        ("grip.faces_y_mm", width(grip.faces_y), FACES_MM),
+        ("grip.slip_limit_mm", grip.slip_limit, [0.2, 30.0]),
+        ("strategy.start_mm", Vector3::from(task.strategy.start).norm(), [3.0, 500.0]),
+        ("success.depth_mm", task.success.depth, [0.5, 150.0]),
+    ];
+    let of_key = |(key, value, range_mm)| length(key, value, range_mm);
+    let mut found: Vec<Problem> = keys.into_iter().filter_map(of_key).collect();
+    // Slabs of a drawn surface may be of any size.
+    let bodies = [("plug", &task.plug.parts), ("socket", &task.socket)];
+    for (body, parts) in bodies.into_iter().filter(|_| task.success.mated.is_none()) {
+        found.extend(parts.iter().filter_map(|part| {
+            let largest = longest_side(&part.solid.corners());
+            length(&part_key(body, &part.name, ""), largest, [0.3, 1000.0])
+        }));
+    }
+    for phase in &task.strategy.phases {
+        let of_phase = |field: &str, value: f64, range_mm: [f64; 2]| {
+            length(&format!("strategy.phase \"{}\" {field}", phase.name), value, range_mm)
+        };
+        let by = Vector3::from(phase.displacement).norm();
+        found.extend(of_phase("move_mm", by, [0.05, 200.0]));
+        found.extend(of_phase("speed_mm_per_s", phase.speed, [0.5, 2000.0]));
+        found.extend(match phase.ending {
+            Ending::Tolerance(value) => of_phase("tolerance_mm", value, [0.005, 10.0]),
+            Ending::Touch { preload, .. } => of_phase("preload_mm", preload, [0.01, 10.0]),
+            Ending::Duration(_) => None,
+        });
+    }
+    found.extend(angle("strategy.tilt_deg", task.strategy.tilt));
+    found.extend(angle("success.tilt_deg", task.success.tilt));
+    if found.is_empty() {
+        found.extend(other_unit(case));
+    }
+    found
+}
+
+/// Checks that a length, m, lies in its range, mm.
+pub(super) fn length(key: &str, value: f64, [low, high]: [f64; 2]) -> Option<Problem> {
+    let value_mm = value / MM;
+    if (low..=high).contains(&value_mm) {
+        return None;
+    }
+    let (size, limit) = if value_mm < low { ("less", low) } else { ("more", high) };
+    let problem = format!("{value_mm:.4} mm is {size} than the plausible {limit} mm");
+    Some(Problem::new(key, problem, remedy(value_mm, [low, high])))
+}
+
+/// Returns advice on a length outside its range, mm: the unit in which it is inside, or the range.
+fn remedy(value_mm: f64, [low, high]: [f64; 2]) -> String {
+    let within = |(_, factor): &&(&str, f64)| (low..=high).contains(&(value_mm * factor));
+    match UNITS.iter().find(within) {
+        Some((unit, factor)) => format!(
+            "lengths are in mm; if these were {unit}, multiply by {factor}: {:.2} mm",
+            value_mm * factor
+        ),
+        None => format!("between {low} and {high} mm"),
+    }
+}
+
+/// Checks that an angle, rad, is 0 or large enough to be in degrees.
+fn angle(key: &str, angle: f64) -> Option<Problem> {
+    let degrees = (angle / DEG * 1e4).round() / 1e4;
+    if angle == 0.0 || degrees.abs() >= LEAST_TILT_DEG {
+        return None;
+    }
+    let problem = format!("{degrees} degrees is less than {LEAST_TILT_DEG}: are these radians?");
+    let remedy = format!("angles are in degrees: {degrees} rad is {:.1} degrees", degrees / DEG);
+    Some(Problem::new(key, problem, remedy))
+}
+
+/// Checks that the plug is not so narrow in the opening that it must be in another unit.
+fn other_unit(case: &TaskBodies) -> Option<Problem> {
+    let depth = case.task.success.depth;
+    let [plug, opening] = [section(&case.plug, depth), case.task.opening].map(|of| of.map(width));
+    let share = |axis: usize| plug[axis] / opening[axis];
+    let axis = usize::from(share(1) < share(0));
+    let [both, one] = LEAST_SHARE;
+    if share(axis) >= one && share(1 - axis) >= both {
+        return None;
+    }
+    let [plug, opening] = [plug[axis], opening[axis]];
+    let remedy = remedy(plug / MM, [both, 1.0].map(|share| share * opening / MM));
+    let ([plug, opening], name) = ([plug, opening].map(mm), ["x", "y"][axis]);
+    let problem = format!("is {plug} mm wide in {name}, but the opening is {opening} mm wide");
+    Some(Problem::new(widest_key(case, depth, axis)?, problem, remedy))
+}

@@ -129,7 +129,7 @@ fn drafted(
         (None, true) => format!("--round {}", mm(&[size.plug.width, size.plug.length])),
         (None, false) => format!("--plug {}", text(&size.plug)),
     };
-    let (name, clearance_mm) = (&request.name, size.clearance / MM);
+    let (name, clearance_mm) = (&request.name, mm(&[size.clearance]));
     let key = size.key.map_or(String::new(), |key| format!(" --key {}", mm(&key)));
     let leg = size.chamfer.map_or(String::new(), |leg| format!(" --chamfer-mm {}", mm(&[leg])));
     let command =

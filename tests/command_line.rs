@@ -39,9 +39,15 @@ fn a_trial_prints_the_promised_keys() {
 
 #[test]
 fn everything_prints_as_text_too() {
-    fake("evaluate --task usb --density 20 --direction 10").says(&["window"]);
+    let evaluate = "evaluate --task usb --density 20 --direction 10";
+    let subject = "task          usb\nrobot         servo\ndesign ";
+    fake(evaluate).says(&[subject, "window"]);
     let trial = fake(TRIAL);
-    trial.says(&["inserted"]);
+    trial.says(&[subject, "inserted"]);
+    let rigid = "warning the robot `rigid` does not yield";
+    for command in [evaluate, TRIAL] {
+        fake(&format!("{command} --robot rigid")).says_in_any_lines(rigid);
+    }
     optimize_line("stiffness").says(&["N/mm"]);
     let tasks = optimize_line("tasks");
     tasks.says(&["ket8", "ket12", "rj45", "usb", "infill", "\n  typical"]);

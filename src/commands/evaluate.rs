@@ -240,8 +240,7 @@ impl Evaluated {
         rest.extend(self.computed.iter().flat_map(lines::by_ribs));
         rest.extend(self.disagreement().map(|remark| (String::new(), remark.to_owned())));
         let text = format!(
-            "task          {}\n{}{}{}time          {:.1} s\n",
-            chosen.scenario.task.name,
+            "{}{}{}time          {:.1} s\n",
             chosen.text(),
             layout::lines(rest),
             self.bands.as_ref().map(bands_text).unwrap_or_default(),

@@ -140,6 +140,6 @@ impl Mapped {
             "trials".to_owned(),
             format!("{} for {points} grid points, every {steps}{coarser}", map.trials),
         ));
-        format!("task          {}\n{}{}", map.task, chosen.text(), layout::lines(lines))
+        chosen.text() + &layout::lines(lines)
     }
 }

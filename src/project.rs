@@ -4,6 +4,7 @@ use crate::failure::Failure;
 use crate::setup::run::THREADS;
 use clap::Command;
 use input::Place;
+use input::files::shell_word;
 use input::shipped::{MEASUREMENTS, Source};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -106,7 +107,7 @@ impl Project {
     pub(crate) fn check_cell(&self) -> Result<(), Failure> {
         let missing = self.settings.cell.iter().find(|file| !Path::new(file).is_file());
         missing.map_or(Ok(()), |file| {
-            let made = format!("`optimize identify --out {file}` writes a cell");
+            let made = format!("`optimize identify --out {}` writes a cell", shell_word(file));
             Err(self.fault("cell", format!("{file} does not exist; {made}")))
         })
     }

@@ -52,7 +52,8 @@ fn everything_prints_as_text_too() {
     let tasks = optimize_line("tasks");
     tasks.says(&["ket8", "ket12", "rj45", "usb", "infill", "\n  typical"]);
     assert!(!tasks.stdout.contains("ur5e"), "one place lists robots");
-    for text in [&trial.stdout, &tasks.stdout] {
+    let finger = optimize_line("finger --density 20 --direction 20");
+    for text in [&trial.stdout, &tasks.stdout, &finger.stdout] {
         assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
     }
     assert!(optimize_line("stiffness --json").json()["models"].is_array());
@@ -275,9 +276,11 @@ fn progress_goes_to_standard_error_unless_quiet() {
     assert!(loud.stderr.contains("8/8 evaluations, best "), "{}", loud.stderr);
     assert_eq!(loud.json()["evaluations"], 8);
     assert_eq!(studies.study("quiet", 8, &[]).stderr, "");
-    for (analysis, parts) in
-        [("levers", "windows of the levers: "), ("map", "trials of the map y,x: ")]
-    {
+    for (analysis, parts) in [
+        ("levers", "windows of the levers: "),
+        ("map", "trials of the map y,x: "),
+        ("evaluate --repeat 2", "offsets of the repeats: 0/"),
+    ] {
         let loud = fake(&format!("{analysis} --task usb --density 20 --direction 10"));
         assert!(loud.stderr.contains(parts), "{}", loud.stderr);
     }
@@ -358,7 +361,10 @@ fn a_design_outside_the_space_is_answered_with_its_bounds() {
         fake(&format!("evaluate --task usb {design}")).fails(2, &parts);
         fake(&format!("trial --task usb {design}")).fails(2, &parts);
     }
-    fake("evaluate --task usb").fails(2, &["--density"]);
+    let stiffness = ["--density <PERCENT> --direction <DEG>", "--stiffness-assembly <K>"];
+    optimize_line("evaluate").fails(2, &stiffness);
+    optimize_line("trial --help").says(&stiffness);
+    fake("evaluate --task usb").fails(2, &["--density", "--stiffness-compliance"]);
     fake("evaluate --task usb --stiffness-compliance 3").fails(2, &["--stiffness-assembly"]);
     for bad in ["0", "-3", "nan", "inf", "soft"] {
         let stiffness = format!("--stiffness-assembly 20 --stiffness-compliance {bad}");

@@ -80,6 +80,13 @@ pub struct FingerRequest {
     pub set: Vec<(String, f64)>,
 }
 
+/// Returns the usage of a command that takes a finger by its infill or by its stiffness.
+pub(crate) fn usage(command: &str) -> String {
+    let task = format!("optimize {command} [OPTIONS] --task <NAME>");
+    let infill = format!("{task} --density <PERCENT> --direction <DEG>");
+    format!("{infill}\n       {task} --stiffness-compliance <K> --stiffness-assembly <K>")
+}
+
 /// Finger on a task, with the source of its stiffness.
 pub struct ChosenFinger {
     /// Task, finger and robot, ready for simulation.
@@ -132,6 +139,11 @@ impl FingerRequest {
             }
             Some((compliance, assembly)) => {
                 Prediction::exact(compliance * N_PER_MM, assembly * N_PER_MM)
+            }
+            None if self.infill == InfillRequest::default() => {
+                return Err(Failure::usage(
+                    "give --density and --direction, or --stiffness-compliance and --stiffness-assembly",
+                ));
             }
             None => {
                 self.infill.required()?;

@@ -3,6 +3,7 @@
 use crate::failure::Failure;
 use crate::progress::{Busy, Progress};
 use crate::terminal::{print, say};
+use input::files::shell_word;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -44,7 +45,7 @@ impl<'a> Context<'a> {
     /// # Errors
     /// If signals cannot be watched.
     pub fn stop_on_interrupt(&self, dir: &Path) -> Result<(), Failure> {
-        let dir = dir.display().to_string();
+        let dir = shell_word(dir.display());
         self.watch(move || {
             INTERRUPTED.store(true, Ordering::SeqCst);
             std::thread::sleep(GRACE);

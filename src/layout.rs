@@ -15,7 +15,8 @@ pub fn wrapped(text: &str) -> String {
 }
 
 fn wrapped_line(line: &str) -> String {
-    if line.trim_end().chars().count() <= COLUMNS {
+    // The next command is not wrapped, so that it can be copied.
+    if line.trim_end().chars().count() <= COLUMNS || line.starts_with("next  ") {
         return line.to_owned();
     }
     let spaces = || {
@@ -56,8 +57,10 @@ mod tests {
         let shape = "best design   material modulus 0.5 GPa, notch pad 11 mm, outline back radius 33 mm, \
                      outline length 64.8 mm, ribs thickness 0.38 mm, skin thickness 0.7 mm (evaluation 9)\n";
         let path = format!("study         {}\n", "x".repeat(100));
+        let next = format!("next          optimize task tune {} --robot rigid\n", "x".repeat(80));
         assert_eq!(wrapped(short), short);
         assert_eq!(wrapped(&path), path, "nothing to break it at");
+        assert_eq!(wrapped(&next), next, "a command to copy");
         let broken = "  least force infill density 10 %, infill direction 29°: 79.2 N\n              (evaluation 1176)\n";
         assert_eq!(wrapped(&format!("{short}{design}")), format!("{short}{broken}"));
         let lines = wrapped(shape);

@@ -3,6 +3,7 @@
 use crate::failure::Failure;
 use crate::setup::run::THREADS;
 use clap::Command;
+use input::files::shell_word;
 use input::shipped::{MEASUREMENTS, Source};
 use input::{Place, RequestError};
 use serde::{Deserialize, Serialize};
@@ -102,7 +103,7 @@ impl Project {
     pub(crate) fn check_cell(&self) -> Result<(), Failure> {
         let missing = self.settings.cell.iter().find(|file| !Path::new(file).is_file());
         missing.map_or(Ok(()), |file| {
-            let made = format!("`optimize identify --out {file}` writes a cell");
+            let made = format!("`optimize identify --out {}` writes a cell", shell_word(file));
             Err(self.fault("cell", format!("{file} does not exist; {made}")))
         })
     }

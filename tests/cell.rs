@@ -53,6 +53,7 @@ fn a_cell_of_another_task_says_what_it_leaves_out() {
             .replace("\n              ", " ")
             .contains("not applied to ket8: task.friction.plug_socket");
         assert_eq!(said, task == "ket8");
+        optimize_line(&line).says(&["robot         servo, of the cell `mine`\n"]);
     }
 }
 

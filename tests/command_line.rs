@@ -39,14 +39,21 @@ fn a_trial_prints_the_promised_keys() {
 
 #[test]
 fn everything_prints_as_text_too() {
-    fake("evaluate --task usb --density 20 --direction 10").says(&["window"]);
+    let evaluate = "evaluate --task usb --density 20 --direction 10";
+    let subject = "task          usb\nrobot         servo\ndesign ";
+    fake(evaluate).says(&[subject, "window"]);
     let trial = fake(TRIAL);
-    trial.says(&["inserted"]);
+    trial.says(&[subject, "inserted"]);
+    let rigid = "warning the robot `rigid` does not yield";
+    for command in [evaluate, TRIAL] {
+        fake(&format!("{command} --robot rigid")).says_in_any_lines(rigid);
+    }
     optimize_line("stiffness").says(&["N/mm"]);
     let tasks = optimize_line("tasks");
     tasks.says(&["ket8", "ket12", "rj45", "usb", "infill", "\n  typical"]);
     assert!(!tasks.stdout.contains("ur5e"), "one place lists robots");
-    for text in [&trial.stdout, &tasks.stdout] {
+    let finger = optimize_line("finger --density 20 --direction 20");
+    for text in [&trial.stdout, &tasks.stdout, &finger.stdout] {
         assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
     }
     assert!(optimize_line("stiffness --json").json()["models"].is_array());
@@ -270,9 +277,11 @@ fn progress_goes_to_standard_error_unless_quiet() {
     assert!(loud.stderr.contains("8/8 evaluations, best "), "{}", loud.stderr);
     assert_eq!(loud.json()["evaluations"], 8);
     assert_eq!(studies.study("quiet", 8, &[]).stderr, "");
-    for (analysis, parts) in
-        [("levers", "windows of the levers: "), ("map", "trials of the map y,x: ")]
-    {
+    for (analysis, parts) in [
+        ("levers", "windows of the levers: "),
+        ("map", "trials of the map y,x: "),
+        ("evaluate --repeat 2", "offsets of the repeats: 0/"),
+    ] {
         let loud = fake(&format!("{analysis} --task usb --density 20 --direction 10"));
         assert!(loud.stderr.contains(parts), "{}", loud.stderr);
     }
@@ -353,7 +362,10 @@ fn a_design_outside_the_space_is_answered_with_its_bounds() {
         fake(&format!("evaluate --task usb {design}")).fails(2, &parts);
         fake(&format!("trial --task usb {design}")).fails(2, &parts);
     }
-    fake("evaluate --task usb").fails(2, &["--density"]);
+    let stiffness = ["--density <PERCENT> --direction <DEG>", "--stiffness-assembly <K>"];
+    optimize_line("evaluate").fails(2, &stiffness);
+    optimize_line("trial --help").says(&stiffness);
+    fake("evaluate --task usb").fails(2, &["--density", "--stiffness-compliance"]);
     fake("evaluate --task usb --stiffness-compliance 3").fails(2, &["--stiffness-assembly"]);
     for bad in ["0", "-3", "nan", "inf", "soft"] {
         let stiffness = format!("--stiffness-assembly 20 --stiffness-compliance {bad}");

@@ -175,17 +175,18 @@ fn an_interrupt_stops_soon_and_leaves_whole_evaluations_in_journal_and_cache() {
     let studies = Studies::new();
     let expected = reference(&studies);
     let cache = studies.word("cache");
-    let child = studies.begun("stopped", BUDGET, &["--cache", &cache], 5);
+    let child = studies.begun("it stopped", BUDGET, &["--cache", &cache], 5);
     let kill = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
     assert!(kill.expect("kill").success());
     let (code, stderr) = end(child);
-    assert!(code == Some(1) && stderr.contains("optimize resume"), "{stderr}");
-    let lines = studies.journal("stopped").lines().count();
+    let resume = format!("optimize resume '{}'", studies.word("it stopped"));
+    assert!(code == Some(1) && stderr.contains(&resume), "{stderr}");
+    let lines = studies.journal("it stopped").lines().count();
     assert!(lines < expected.lines().count(), "it ran on for {lines} lines");
     studies.study("other", BUDGET, &["--cache", &cache]).succeeds();
-    studies.resume("stopped").succeeds();
+    studies.resume("it stopped").succeeds();
     assert_eq!(studies.journal("other"), expected);
-    assert_eq!(studies.journal("stopped"), expected);
+    assert_eq!(studies.journal("it stopped"), expected);
 }
 
 #[test]

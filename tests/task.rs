@@ -318,6 +318,13 @@ fn a_task_is_made_shown_checked_and_used() {
         "task new c --plug 8.25x2.4x6.65 --clearance 0.1 --body 12x6.5x20 --engine fake --out";
     assert!(said(new, &[path]).succeeds().contains(path));
     said(new, &[path]).fails(2, &["exists", "--out"]);
+    let other = folder.word("my rigid.toml");
+    let next = format!("next          optimize task tune '{other}' --robot rigid\n");
+    said(&format!("task new c --like {path} --robot rigit --engine fake --out"), &[&other])
+        .fails(2, &["did you mean `rigid`"]);
+    let made = said(&new.replace(" --out", " --robot rigid --out"), &[&other]);
+    made.says(&["robot         rigid\n", &next]);
+    said("task check --engine fake", &[path]).says(&["robot         servo\n"]);
     let check = |more: &[&str]| said("task check --engine fake --json", &[&[path], more].concat());
     let drawn = check(&["--svg", &folder.word("c.svg")]).json();
     assert_eq!(drawn["valid"], true);

@@ -804,6 +804,7 @@ def new_task(
     body: tuple[float, float, float] | None = None,
     like: StrPath | None = None,
     out: StrPath | None = None,
+    robot: RobotName | StrPath = "servo",
     engine: Engine = "direct",
 ) -> NewTask:
     """Create a commented task file from a few dimensions, or from another task, as ``optimize task new`` does.
@@ -828,7 +829,8 @@ def new_task(
             itself; for pins their block, 20 mm long].
         like: Task to start from: ket8, ket12, rj45, usb, rj45_latch, usb_a, or the path of a task file.
         out: File to write [default: NAME.toml].
-        engine: Contact engine for the nominal start.
+        robot: see `optimize robots`, or the path of a robot file.
+        engine: Contact engine.
 
     Raises:
         InputError: A value or file is invalid; :class:`TaskError` if it is the task.
@@ -842,7 +844,7 @@ def new_task(
     return called("task new", {
         "name": name, "plug": plug, "round": round, "pins": pins, "pitch_mm": pitch_mm, "pin_mm": pin_mm,
         "pin_length_mm": pin_length_mm, "clearance": clearance, "key": key, "chamfer_mm": chamfer_mm, "body": body,
-        "like": like, "out": out, "engine": engine,
+        "like": like, "out": out, "robot": robot, "engine": engine,
     }, NewTask)
 
 

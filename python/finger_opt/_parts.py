@@ -16,7 +16,7 @@ from ._native import InputError
 from ._result import Result
 from ._step import Body
 from ._task import Task
-from ._words import Engine, StrPath
+from ._words import Engine, RobotName, StrPath
 
 #: Direction of insertion along an axis of the file.
 Along = Literal["x", "-x", "y", "-y", "z", "-z"]
@@ -106,6 +106,7 @@ def import_parts(
     body: tuple[float, float, float] | None = None,
     depth_mm: float | None = None,
     tolerance_mm: float = 0.01,
+    robot: RobotName | StrPath = "servo",
     engine: Engine = "direct",
 ) -> Imported:
     """Writes a task file from STL, OBJ or STEP files of a plug and its socket, like ``optimize task import``.
@@ -131,7 +132,8 @@ def import_parts(
         body: Handle for a plug without faces to grip: width between the jaws, height, length, mm.
         depth_mm: Depth to be reached in a through hole, mm.
         tolerance_mm: Largest deviation of facets from the surfaces of a STEP file, mm.
-        engine: Contact engine for the nominal start.
+        robot: Robot: see ``fo.robots()``, or the path of a robot file.
+        engine: Contact engine.
 
     Raises:
         InputError: A file cannot be used, or its shapes do not define a task.
@@ -175,8 +177,8 @@ def import_parts(
     settings: dict[str, Any] = {
         "plug_body": None if files[0] in steps else names[0],
         "socket_body": None if files[-1] in steps else names[1],
-        "unit": unit, "insert_along": insert_along, "pose": pose, "jaws": jaws, "like": like, "engine": engine,
-        "body": body, "depth_mm": depth_mm,
+        "unit": unit, "insert_along": insert_along, "pose": pose, "jaws": jaws, "like": like, "robot": robot,
+        "engine": engine, "body": body, "depth_mm": depth_mm,
         "names": (str(files[0]), str(files[-1])),
     }
     with tempfile.TemporaryDirectory() as folder:

@@ -4,7 +4,7 @@ use crate::command::{self, Output};
 use crate::context::{Context, not_stopped};
 use crate::failure::Failure;
 use crate::layout;
-use crate::setup::finger::{ChosenFinger, FingerRequest};
+use crate::setup::finger::{ChosenFinger, FingerRequest, usage};
 use crate::setup::repeat::{RepeatRequest, bands_text, serialize_bands};
 use crate::setup::request::SetupRequest;
 use crate::setup::{Setup, measured};
@@ -26,6 +26,7 @@ use study::ByRibs;
 #[derive(Debug, Clone, Default, clap::Args)]
 #[command(
     display_order = 10,
+    override_usage = usage("evaluate"),
     after_help = "Example: optimize evaluate --task usb --density 20 --direction 10 --walk"
 )]
 pub struct Request {
@@ -97,7 +98,7 @@ impl Request {
     /// If an input cannot be used, or the run is cancelled.
     pub fn evaluated(&self, context: &Context<'_>) -> Result<Evaluated, Failure> {
         let stop = context.stop;
-        let _busy = context.busy("simulating the finger");
+        let busy = context.busy("simulating the finger");
         let (setup, plan) = self.prepared()?;
         let chosen = self.finger.choose(&setup)?;
         let measured = self.measured(&chosen)?;
@@ -107,13 +108,21 @@ impl Request {
         not_stopped(stop)?;
         let wall_s = clock.elapsed().as_secs_f64();
         let window = &evaluation.window;
+        let computed = self.by_ribs(&setup, &chosen, stop)?;
+        drop(busy);
         let bands = |repeat: RepeatRequest| {
             let (scenario, taught) = (&chosen.scenario, evaluation.taught);
-            repeat.run(&setup, scenario, taught, stop, |repeats| repeats.bands(window))
+            let cost = f64::from(repeat.count);
+            let progress = |[done, of]: [usize; 2]| {
+                let cost = f64::from(done > 0) * cost / of as f64;
+                context.part("offsets of the repeats", [done, of], cost);
+            };
+            context.begin(cost);
+            repeat.run(&setup, scenario, taught, stop, |repeats| repeats.bands(window, &progress))
         };
         let repeat = self.repeat.filter(|_| window.nominal == Outcome::Inserted);
         let bands = repeat.map(bands).transpose()?;
-        let computed = self.by_ribs(&setup, &chosen, stop)?;
+        context.end();
         let limit_n = limit_n(&setup, &chosen);
         Ok(Evaluated { chosen, evaluation, bands, computed, wall_s, measured, limit_n })
     }
@@ -240,8 +249,7 @@ impl Evaluated {
         rest.extend(self.computed.iter().flat_map(lines::by_ribs));
         rest.extend(self.disagreement().map(|remark| (String::new(), remark.to_owned())));
         let text = format!(
-            "task          {}\n{}{}{}time          {:.1} s\n",
-            chosen.scenario.task.name,
+            "{}{}{}time          {:.1} s\n",
             chosen.text(),
             layout::lines(rest),
             self.bands.as_ref().map(bands_text).unwrap_or_default(),

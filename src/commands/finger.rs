@@ -3,6 +3,7 @@
 use crate::command::{self, Output};
 use crate::context::Context;
 use crate::failure::Failure;
+use crate::layout::wrapped;
 use crate::setup::files::DEFAULT_FINGER;
 use crate::setup::finger::{InfillRequest, setting};
 use crate::setup::printed::{finger_file, predicted_stiffness};
@@ -86,7 +87,8 @@ impl command::Request for Request {
         let model = predicted_stiffness(&file.finger, &design)?;
         let svg = picture::svg(&geometry, self.load_n).map_err(Failure::input)?;
         let value = json(&geometry, &computed, model.as_ref());
-        Output::new(text(&geometry, &computed, model.as_ref()), value).drawn(svg, self.svg.as_ref())
+        let text = wrapped(&text(&geometry, &computed, model.as_ref()));
+        Output::new(text, value).drawn(svg, self.svg.as_ref())
     }
 }
 

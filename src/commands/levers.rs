@@ -6,7 +6,7 @@ use crate::failure::Failure;
 use crate::layout;
 use crate::progress::cost;
 use crate::setup::Setup;
-use crate::setup::finger::FingerRequest;
+use crate::setup::finger::{FingerRequest, usage};
 use crate::setup::request::SetupRequest;
 use crate::studies::summary::levers_json;
 use analysis::levers::{LeverAnalysis, Levers};
@@ -19,6 +19,7 @@ use std::path::PathBuf;
 #[derive(Debug, Clone, Default, clap::Args)]
 #[command(
     display_order = 17,
+    override_usage = usage("levers"),
     after_help = "Example: optimize levers --task rj45 --density 18 --direction 20 --svg rj45.svg"
 )]
 pub struct Request {

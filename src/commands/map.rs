@@ -6,7 +6,7 @@ use crate::failure::Failure;
 use crate::layout;
 use crate::progress::cost;
 use crate::setup::Setup;
-use crate::setup::finger::{ChosenFinger, FingerRequest};
+use crate::setup::finger::{ChosenFinger, FingerRequest, usage};
 use crate::setup::request::SetupRequest;
 use analysis::map::{Axes, CaptureMap, Plane};
 use insertion::evaluation::OffsetStep;
@@ -26,6 +26,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 #[derive(Debug, Clone, Default, clap::Args)]
 #[command(
     display_order = 12,
+    override_usage = usage("map"),
     after_help = "Example: optimize map --task usb --density 10 --direction 26 --axes y,yaw --svg map.svg"
 )]
 pub struct Request {
@@ -140,6 +141,6 @@ impl Mapped {
             "trials".to_owned(),
             format!("{} for {points} grid points, every {steps}{coarser}", map.trials),
         ));
-        format!("task          {}\n{}{}", map.task, chosen.text(), layout::lines(lines))
+        chosen.text() + &layout::lines(lines)
     }
 }

@@ -6,7 +6,7 @@ use crate::failure::Failure;
 use crate::layout;
 use crate::setup::driven::undriven;
 use crate::setup::film::FilmRequest;
-use crate::setup::finger::{ChosenFinger, FingerRequest};
+use crate::setup::finger::{ChosenFinger, FingerRequest, usage};
 use crate::setup::repeat::RepeatRequest;
 use crate::setup::request::SetupRequest;
 use crate::setup::task::outcome_json;
@@ -39,6 +39,7 @@ fn offset(text: &str) -> Result<f64, String> {
 #[derive(Debug, Clone, Default, clap::Args)]
 #[command(
     display_order = 11,
+    override_usage = usage("trial"),
     after_help = "Example: optimize trial --task ket12 --density 10 --direction 0 --offset-mm 0.5 --svg trial.svg"
 )]
 pub struct Request {

@@ -80,12 +80,17 @@ pub struct FingerRequest {
     pub set: Vec<(String, f64)>,
 }
 
+/// Returns the usage of a command that takes a finger by its infill or by its stiffness.
+pub(crate) fn usage(command: &str) -> String {
+    let task = format!("optimize {command} [OPTIONS] --task <NAME>");
+    let infill = format!("{task} --density <PERCENT> --direction <DEG>");
+    format!("{infill}\n       {task} --stiffness-compliance <K> --stiffness-assembly <K>")
+}
+
 /// Finger on a task, with the source of its stiffness.
 pub struct ChosenFinger {
     /// Task, finger and robot, ready for simulation.
     pub scenario: Scenario,
-    /// Name of the robot.
-    pub robot: String,
     /// Cell (robot, friction and other parameters of an installation), if one is given.
     pub cell: Option<Priors>,
     /// Finger model: source of the stiffnesses that were not measured.
@@ -135,6 +140,11 @@ impl FingerRequest {
             Some((compliance, assembly)) => {
                 Prediction::exact(compliance * N_PER_MM, assembly * N_PER_MM)
             }
+            None if self.infill == InfillRequest::default() => {
+                return Err(Failure::usage(
+                    "give --density and --direction, or --stiffness-compliance and --stiffness-assembly",
+                ));
+            }
             None => {
                 self.infill.required()?;
                 evaluator.predict(&design).map_err(Failure::input)?
@@ -143,7 +153,6 @@ impl FingerRequest {
         let scenario = evaluator.scenario(template, &design, stiffness).map_err(Failure::input)?;
         Ok(ChosenFinger {
             scenario,
-            robot: evaluator.robot.name.clone(),
             cell: evaluator.cell.clone(),
             finger_model: evaluator.fingers.kind(),
             design,
@@ -193,10 +202,10 @@ fn check(setup: &Setup, flag: &str, key: &str, value: f64) -> Result<(), Failure
 
 impl Serialize for ChosenFinger {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let Scenario { task, finger, stiffness, .. } = &self.scenario;
+        let Scenario { task, finger, stiffness, robot, .. } = &self.scenario;
         let mut subject = json!({
             "task": task.name,
-            "robot": self.robot,
+            "robot": robot.name,
             "cell": self.cell.as_ref().map(|cell| &cell.name),
             "infill_density_percent": self.design.get(DENSITY_KEY),
             "infill_direction_deg": self.design.get(DIRECTION_KEY),
@@ -220,9 +229,9 @@ impl Serialize for ChosenFinger {
 }
 
 impl ChosenFinger {
-    /// Returns design, stiffness and finger model as lines.
+    /// Returns task, robot, design, stiffness and finger model as lines.
     pub fn text(&self) -> String {
-        let stiffness = &self.scenario.stiffness;
+        let Scenario { task, robot, stiffness, .. } = &self.scenario;
         let stiffness = match self.given {
             false => layout::lines(lines::stiffness(stiffness)),
             true => format!(
@@ -236,9 +245,14 @@ impl ChosenFinger {
             true => String::new(),
             false => format!("design        {}\n", self.design.labelled()),
         };
-        let remark = self.cell.as_ref().and_then(|cell| cell.remark(&self.scenario.task.name));
-        let remark = remark.map(|remark| format!("warning       {remark}\n"));
-        format!("{design}{stiffness}{finger}{}", remark.unwrap_or_default())
+        let cell = self.cell.as_ref();
+        let of_cell = cell.map_or(String::new(), |cell| format!(", of the cell `{}`", cell.name));
+        let subject =
+            format!("task          {}\nrobot         {}{of_cell}\n", task.name, robot.name);
+        let remarks =
+            cell.and_then(|cell| cell.remark(&task.name)).into_iter().chain(robot.remark());
+        let remarks: String = remarks.map(|remark| format!("warning       {remark}\n")).collect();
+        format!("{subject}{design}{stiffness}{finger}{remarks}")
     }
 
     /// Returns the values computed by the finger model as text; empty for the model of the paper.

@@ -5,6 +5,7 @@ use super::files::{DEFAULT_FINGER, Fingers, find, stiffness_data};
 use crate::failure::Failure;
 use clap::Arg;
 use connector::mesh::axes::value;
+use input::files::shell_word;
 use input::shipped::{COMMERCIAL, FINGERS, ROBOTS, SPACES, Source, TASKS, resolve};
 use insertion::evaluation::cell::Priors;
 use insertion::finger::file::is_shape;
@@ -15,6 +16,7 @@ use insertion::task::parts_file::with_parts;
 use insertion::trial::engine::EngineKind;
 use serde::Deserialize;
 use std::convert::Infallible;
+use std::fmt::Display;
 use std::path::Path;
 
 /// Default robot.
@@ -68,6 +70,26 @@ impl TaskSource {
             TaskSource::Given(source) => source.clone(),
         };
         with_parts(source).map_err(Failure::task)
+    }
+}
+
+/// Robot and contact engine of the trials with a task file.
+#[derive(Debug, Clone, clap::Args)]
+pub struct RobotRequest {
+    /// Robot: see `optimize robots`, or the path of a robot file
+    #[arg(id = "robot", long = "robot", value_name = "NAME", default_value = DEFAULT_ROBOT)]
+    pub name: String,
+    /// Contact engine
+    #[arg(long, value_enum, default_value_t)]
+    pub engine: EngineKind,
+}
+
+impl RobotRequest {
+    /// Returns a command on a task file, with this robot unless it is the default.
+    pub fn command(&self, command: &str, file: impl Display) -> String {
+        let robot = Some(&self.name).filter(|name| *name != DEFAULT_ROBOT);
+        let robot = robot.map(|name| format!(" --robot {}", shell_word(name)));
+        format!("optimize {command} {}{}", shell_word(file), robot.unwrap_or_default())
     }
 }
 

@@ -1,7 +1,7 @@
 //! Task and space files, and checks of a task.
 
 use super::files::{find, robot};
-use super::request::TaskSource;
+use super::request::{RobotRequest, TaskSource};
 use super::tune::{self, tune_until_success};
 use crate::context::not_stopped;
 use crate::failure::Failure;
@@ -78,51 +78,45 @@ pub struct TaskCheck {
     pub problems: Vec<Problem>,
     /// Finger, trial and explanation of the nominal start; `None` if there are problems.
     pub nominal: Option<(Finger, Trial, String)>,
+    /// Robot and engine of the trial.
+    with: RobotRequest,
 }
 
 impl TaskCheck {
-    /// Checks a task file with the robot of that name.
+    /// Checks a task file with this robot.
     ///
     /// # Errors
     /// If the nominal start cannot be simulated; if `stop` is set meanwhile.
-    pub fn of(
-        source: Source,
-        robot_name: &str,
-        engine: EngineKind,
-        stop: &AtomicBool,
-    ) -> Result<Self, Failure> {
+    pub fn of(source: Source, with: &RobotRequest, stop: &AtomicBool) -> Result<Self, Failure> {
+        let with = with.clone();
         let task = match Task::parse(&source.text, &source.file) {
             Ok(task) => task,
             Err(error) => {
                 let problems = vec![Problem::from(&error)];
-                return Ok(TaskCheck { source, task: None, problems, nominal: None });
+                return Ok(TaskCheck { source, task: None, problems, nominal: None, with });
             }
         };
         let problems = problems(&task);
         let nominal = match problems.is_empty() {
             true => {
-                let (finger, trial) = nominal_start(&task, &robot(robot_name)?, engine, stop)?;
+                let robot = robot(&with.name)?;
+                let (finger, trial) = nominal_start(&task, &robot, with.engine, stop)?;
                 let explanation = nominal::explain(&task, &trial);
                 Some((finger, trial, explanation))
             }
             false => None,
         };
-        Ok(TaskCheck { source, task: Some(task), problems, nominal })
+        Ok(TaskCheck { source, task: Some(task), problems, nominal, with })
     }
 
     /// Tunes a task whose nominal start fails; `None` if it inserts, or if there are problems.
     ///
     /// # Errors
     /// If the task cannot be simulated; if `stop` is set meanwhile.
-    pub fn tune(
-        &self,
-        robot_name: &str,
-        engine: EngineKind,
-        stop: &AtomicBool,
-    ) -> Result<Option<Tuned>, Failure> {
+    pub fn tune(&self, stop: &AtomicBool) -> Result<Option<Tuned>, Failure> {
         match (&self.task, &self.nominal) {
             (Some(task), Some((_, trial, _))) if trial.outcome != Outcome::Inserted => {
-                tune_until_success(task, (robot_name, engine), Stage::Search, stop).map(Some)
+                tune_until_success(task, &self.with, Stage::Search, stop).map(Some)
             }
             _ => Ok(None),
         }
@@ -204,9 +198,11 @@ impl TaskCheck {
             None => text.push_str("nominal       not tried: fix the problems first\n"),
             Some((finger, trial, explanation)) => text.push_str(&format!(
                 "geometry      no problems\n\
+                 robot         {}\n\
                  finger        compliance {} N/mm, assembly {} N/mm: the medium one of the measured fingers\n\
                  mating force  {}\n\
                  nominal       {}, peak force {:.1} N, slip {:.2} mm\n              {explanation}\n",
+                self.with.name,
                 finger.compliance / N_PER_MM,
                 finger.assembly / N_PER_MM,
                 mating_force(self.task.as_ref().and_then(Task::largest_mating_force)),
@@ -218,10 +214,15 @@ impl TaskCheck {
         text
     }
 
+    /// Returns the command that tunes the task with the same robot.
+    pub fn tune_command(&self) -> String {
+        self.with.command("task tune", &self.source.file)
+    }
+
     /// Returns the text for a new task, with the next command if the nominal start inserts.
     pub fn text_of_new(&self) -> String {
         let next = match self.failure() {
-            None => format!("next          optimize task tune {}\n", self.source.file),
+            None => format!("next          {}\n", self.tune_command()),
             Some(_) => String::new(),
         };
         self.text() + &next
@@ -243,10 +244,8 @@ impl TaskCheck {
     pub fn failure_of_new(&self, tuned: Option<&Tuned>) -> Option<Failure> {
         let (failure, file) = (self.failure()?, &self.source.file);
         Some(Failure::running(tuned.map_or(failure.to_string(), |tuned| {
-            let tried = tune::tried(tuned);
-            format!(
-                "{file}: does not insert; tried: {tried}; `optimize task tune {file}` tries more"
-            )
+            let (tried, command) = (tune::tried(tuned), self.tune_command());
+            format!("{file}: does not insert; tried: {tried}; `{command}` tries more")
         })))
     }
 }

@@ -1,7 +1,7 @@
 //! Tuning of a task's strategy, and its result as text.
 
 use super::files::robot;
-use super::request::DEFAULT_ROBOT;
+use super::request::RobotRequest;
 use crate::context::not_stopped;
 use crate::failure::Failure;
 use crate::layout;
@@ -12,7 +12,6 @@ use input::units::DEG;
 use insertion::evaluation::{INDIFFERENCE_MM, Window};
 use insertion::outcome::Outcome;
 use insertion::task::Task;
-use insertion::trial::engine::EngineKind;
 use serde_json::{Value, json};
 use std::sync::atomic::AtomicBool;
 
@@ -23,13 +22,13 @@ use std::sync::atomic::AtomicBool;
 /// If the task cannot be simulated; if `stop` is set meanwhile.
 pub fn tune_new(
     task: Task,
-    engine: EngineKind,
+    with: &RobotRequest,
     stop: &AtomicBool,
 ) -> Result<(Task, Option<Tuned>), Failure> {
     if !problems(&task).is_empty() {
         return Ok((task, None));
     }
-    let tuned = tune_until_success(&task, (DEFAULT_ROBOT, engine), Stage::Families, stop)?;
+    let tuned = tune_until_success(&task, with, Stage::Families, stop)?;
     let best = tuned.best();
     let strategy = if tuned.inserts() { best.tried.strategy.clone() } else { task.strategy };
     Ok((Task { strategy, ..task }, Some(tuned)))
@@ -41,13 +40,14 @@ pub fn tune_new(
 /// If the task cannot be simulated; if `stop` is set meanwhile.
 pub fn tune_until_success(
     task: &Task,
-    (robot_name, engine): (&str, EngineKind),
+    with: &RobotRequest,
     last: Stage,
     stop: &AtomicBool,
 ) -> Result<Tuned, Failure> {
-    let robot = robot(robot_name)?;
+    let robot = robot(&with.name)?;
     let effort = Effort { last, until_enough: true, seed: 0, progress: &|_, _, _, _| () };
-    let tuned = tune(&Tuner::new(task, &robot, engine, stop), &effort).map_err(Failure::input)?;
+    let tuner = Tuner::new(task, &robot, with.engine, stop);
+    let tuned = tune(&tuner, &effort).map_err(Failure::input)?;
     not_stopped(stop)?;
     Ok(tuned)
 }

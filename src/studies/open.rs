@@ -11,6 +11,7 @@ use crate::setup::task::nominal_start;
 use ::report::answer::Answer;
 use ::report::answer::command::repair;
 use ::report::answer::words::outcome;
+use input::files::shell_word;
 use insertion::evaluation::evaluator::Evaluator;
 use insertion::evaluation::robustness::Plan;
 use insertion::evaluation::template::Template;
@@ -236,6 +237,7 @@ pub(super) fn hint(error: StudyError, study: &Study) -> Failure {
 
 /// Returns the progress of a study and the command that resumes it.
 pub(super) fn resume_hint(study: &Study) -> String {
-    let (done, dir) = (study.config.counted(study.evaluations.len()), study.dir().display());
+    let done = study.config.counted(study.evaluations.len());
+    let dir = shell_word(study.dir().display());
     format!("{done} are safe; continue with: optimize resume {dir}")
 }

@@ -2,6 +2,7 @@
 
 use super::pins::Pins;
 use super::plan;
+use input::shown;
 use input::units::MM;
 use insertion::finger::Pad;
 use insertion::task::finger::FingerModel;
@@ -138,27 +139,26 @@ pub fn blank(name: &str, like: Option<&Task>) -> Task {
 pub fn draft(name: &str, size: &Dimensions, like: Option<&Task>) -> Result<Task, String> {
     let (plug, body) = (size.plug, size.body);
     let thickness = size.pins.map_or(plug.width.min(plug.height), |pins| pins.side);
-    let [width, height, clearance] = [plug.width, plug.height, size.clearance].map(|v| v / MM);
+    let [width, height, clearance] =
+        [plug.width, plug.height, size.clearance].map(|v| shown(v / MM));
     if size.clearance >= thickness {
         return Err(format!(
             "--clearance: is {clearance} mm; it must be less than the smallest side of the plug, {} mm",
-            thickness / MM
+            shown(thickness / MM)
         ));
     }
     if let Some(Pins { pitch, side, .. }) = size.pins
         && side + size.clearance >= pitch
     {
-        let [pitch, hole] = [pitch, side + size.clearance].map(|v| v / MM);
-        return Err(format!(
-            "--pitch-mm: is {pitch} mm; it must be more than a hole, {hole:.2} mm"
-        ));
+        let [pitch, hole] = [pitch, side + size.clearance].map(|v| shown(v / MM));
+        return Err(format!("--pitch-mm: is {pitch} mm; it must be more than a hole, {hole} mm"));
     }
     if let (Some(_), Some(body)) = (size.pins, body)
         && (body.width < plug.width || body.height < plug.height)
     {
-        let [wide, high] = [body.width, body.height].map(|v| v / MM);
+        let [wide, high] = [body.width, body.height].map(|v| shown(v / MM));
         return Err(format!(
-            "--body: is {wide} x {high} mm; it must cover all pins, {width:.2} x {height:.2} mm"
+            "--body: is {wide} x {high} mm; it must cover all pins, {width} x {height} mm"
         ));
     }
     let mut task = blank(name, like);
@@ -177,7 +177,7 @@ pub fn draft(name: &str, size: &Dimensions, like: Option<&Task>) -> Result<Task,
     task.description = format!("{shape}, {clearance} mm clearance");
     if let Some([wide, high]) = size.key {
         if wide + size.clearance >= plug.width {
-            let wide = wide / MM;
+            let wide = shown(wide / MM);
             return Err(format!(
                 "--key: is {wide} mm wide; it must be narrower than the plug, {width} mm"
             ));
@@ -206,7 +206,7 @@ pub fn draft(name: &str, size: &Dimensions, like: Option<&Task>) -> Result<Task,
         return Err(format!(
             "{option}: is {} mm long; the pads are {} mm high and must stay outside of the socket, so \
              at least {:.1} mm are needed",
-            held.length / MM,
+            shown(held.length / MM),
             Pad::PUBLISHED.height / MM,
             least / MM
         ));

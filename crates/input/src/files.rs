@@ -2,9 +2,10 @@
 //!
 //! A path from the user may lead to a symbolic link, a pipe or a device.
 
+use std::fmt::Display;
 use std::fs::{self, File, Metadata, OpenOptions, Permissions};
 use std::io::{self, Read, Write};
-use std::path::{Path, PathBuf};
+use std::path::{MAIN_SEPARATOR, Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
@@ -246,10 +247,33 @@ pub fn visible(text: &str) -> String {
     shown
 }
 
+/// Returns a name or path as a word of a shell command, within quotation marks if it needs them.
+pub fn shell_word(text: impl Display) -> String {
+    let text = text.to_string();
+    let plain = |c: char| c.is_alphanumeric() || "-_./,:=+@%".contains(c) || c == MAIN_SEPARATOR;
+    match !text.is_empty() && text.chars().all(plain) {
+        true => text,
+        false => format!("'{}'", text.replace('\'', r"'\''")),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use std::sync::atomic::AtomicBool;
+
+    #[test]
+    fn a_word_of_a_shell_is_quoted_if_it_would_be_split_or_expanded() {
+        for (text, word) in [
+            ("results/usb-gp-seed0", "results/usb-gp-seed0"),
+            ("my studies/ü.toml", "'my studies/ü.toml'"),
+            ("it's", r"'it'\''s'"),
+            ("~/a", "'~/a'"),
+            ("", "''"),
+        ] {
+            assert_eq!(shell_word(text), word);
+        }
+    }
 
     #[test]
     fn control_characters_are_shown_and_json_stays_json() {

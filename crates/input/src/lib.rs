@@ -168,8 +168,10 @@ pub fn check_quotes(text: &str, file: &str) -> Result<(), InputError> {
 const UNCLOSED: &str = "a quoted cell runs over the end of the line; close its quotation mark \
                             there (a mark within a quoted cell is written twice)";
 
-/// Formats a number for messages, very large and very small ones with an exponent.
+/// Formats a number for messages with at most 15 significant digits, which omits the rounding error of a conversion
+/// between units; very large and very small ones with an exponent.
 pub fn shown(value: f64) -> String {
+    let value = format!("{value:.14e}").parse().unwrap_or(value);
     let plain = value == 0.0 || (1e-6..1e12).contains(&value.abs()) || !value.is_finite();
     if plain { value.to_string() } else { format!("{value:e}") }
 }
@@ -272,6 +274,21 @@ mod tests {
     struct Friction {
         #[expect(dead_code, reason = "only its name is read")]
         plug_socket: f64,
+    }
+
+    #[test]
+    fn numbers_are_shown_without_the_rounding_error_of_a_conversion() {
+        for (value, text) in [
+            (0.0041 * 1e3, "4.1"),
+            (100.0 * 0.07, "7"),
+            (15.7e-3 / 1e-3, "15.7"),
+            (-0.123456789012345, "-0.123456789012345"),
+            (0.0, "0"),
+            (2e15, "2e15"),
+            (f64::NAN, "NaN"),
+        ] {
+            assert_eq!(shown(value), text);
+        }
     }
 
     #[test]

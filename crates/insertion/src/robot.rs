@@ -83,6 +83,16 @@ impl Robot {
         Ok(Robot { name, description, drive, stop_force })
     }
 
+    /// Returns a remark on the contact forces of a rigid robot; `None` for a compliant one.
+    pub fn remark(&self) -> Option<String> {
+        let Robot { name, stop_force, .. } = self;
+        matches!(self.drive, Drive::Ideal).then(|| {
+            format!(
+                "the robot `{name}` does not yield: a real one has lower contact forces; it stops above {stop_force} N"
+            )
+        })
+    }
+
     /// Returns the robot at the start of a task whose frame is turned by `turn` about the
     /// base's z, with the TCP tilted by `tilt` about the task's x, rad.
     ///

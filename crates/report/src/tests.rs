@@ -1,13 +1,14 @@
 use super::*;
 use crate::answer::words;
 use finray::printed::PrintedFinger;
-use input::shipped::{FINGERS, STIFFNESS};
+use input::shipped::{FINGERS, ROBOTS, STIFFNESS};
 use input::units::N_PER_MM;
 use insertion::evaluation::Evaluation;
 use insertion::evaluation::objective::{Aggregate, Goals, Measure};
 use insertion::evaluation::tolerance::{Search, evaluate};
 use insertion::finger::Finger;
 use insertion::outcome::{FailureClass, Outcome};
+use insertion::robot::Robot;
 use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design, Space};
 use insertion::stiffness::parse;
 use insertion::surrogate::{Model, fit};
@@ -214,6 +215,18 @@ fn a_best_design_outside_the_hull_is_warned_of() {
     let distance =
         format!("extrapolated by {:.2} of the measured span", recorded.stiffness.hull_distance);
     assert!(html(&record(vec![recorded])).contains(&distance), "{distance}");
+}
+
+#[test]
+fn a_rigid_robot_is_remarked_once_by_terminal_and_page() {
+    let mut study = study();
+    let remark = "the robot `rigid` does not yield";
+    for (robot, count) in [(&ROBOTS[0], 0), (&ROBOTS[1], 1)] {
+        study.limits.robot = Some(Robot::parse(robot.text, robot.file).unwrap());
+        let lines = crate::answer::lines::brief(&crate::answer::Answer::of(&study));
+        assert_eq!(lines.iter().filter(|(_, text)| text.contains(remark)).count(), count);
+        assert_eq!(html(&study).matches(remark).count(), count);
+    }
 }
 
 #[test]

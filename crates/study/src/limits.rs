@@ -13,8 +13,8 @@ pub const STOP_SHARE: f64 = 0.9;
 pub struct ForceLimits {
     /// Limit of each connector, for those whose task file has one.
     pub connectors: Vec<Option<f64>>,
-    /// Force at which the robot stops, if its file is known.
-    pub stop: Option<f64>,
+    /// Robot, which stops at its stop force; `None` if its file cannot be read.
+    pub robot: Option<Robot>,
     /// Largest force of the contact springs of each connector, for those whose task file gives it.
     pub mating: Vec<Option<f64>>,
 }
@@ -30,17 +30,17 @@ impl ForceLimits {
         let of = |force: fn(&Task) -> Option<f64>| -> Vec<Option<f64>> {
             tasks.iter().map(|task| task.as_ref().and_then(force)).collect()
         };
-        let robot = inputs.get("robot").and_then(|text| Robot::parse(text, "").ok());
         ForceLimits {
             connectors: of(|task| task.limits.force),
             mating: of(Task::largest_mating_force),
-            stop: robot.map(|robot| robot.stop_force),
+            robot: inputs.get("robot").and_then(|text| Robot::parse(text, "").ok()),
         }
     }
 
     /// Returns the largest acceptable force on a task, by its index; infinite if there is none.
     pub fn acceptable(&self, task: usize) -> f64 {
         let connector = self.connectors.get(task).copied().flatten().unwrap_or(f64::INFINITY);
-        self.stop.map_or(connector, |stop| connector.min(STOP_SHARE * stop))
+        let stop = self.robot.as_ref().map(|robot| STOP_SHARE * robot.stop_force);
+        stop.map_or(connector, |stop| connector.min(stop))
     }
 }

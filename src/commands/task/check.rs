@@ -4,11 +4,10 @@ use crate::command::{self, Output};
 use crate::context::Context;
 use crate::failure::Failure;
 use crate::layout;
-use crate::setup::request::{DEFAULT_ROBOT, TaskSource};
+use crate::setup::request::{RobotRequest, TaskSource};
 use crate::setup::task::TaskCheck;
 use crate::setup::tune::{brief, chosen, tried};
 use connector::picture;
-use insertion::trial::engine::EngineKind;
 use std::convert::Infallible;
 use std::path::PathBuf;
 use study::write_file;
@@ -28,12 +27,9 @@ pub struct Request {
     /// Draw plug, socket, clearances, fingertips and search path
     #[arg(long, value_name = "FILE.svg")]
     pub svg: Option<PathBuf>,
-    /// Robot: see `optimize robots`, or the path of a robot file
-    #[arg(long, value_name = "NAME", default_value = DEFAULT_ROBOT)]
-    pub robot: String,
-    /// Contact engine
-    #[arg(long, value_enum, default_value_t)]
-    pub engine: EngineKind,
+    /// Robot and contact engine.
+    #[command(flatten)]
+    pub robot: RobotRequest,
 }
 
 impl command::Request for Request {
@@ -41,15 +37,14 @@ impl command::Request for Request {
 
     fn run(&self, context: &Context<'_>) -> Result<Output, Failure> {
         let _busy = context.busy("simulating the start");
-        let checked = TaskCheck::of(self.file.read()?, &self.robot, self.engine, context.stop)?;
+        let checked = TaskCheck::of(self.file.read()?, &self.robot, context.stop)?;
         let drawing = checked.task.as_ref().map(picture::svg);
         let written = self.svg.as_ref().zip(drawing.as_ref());
         written.map_or(Ok(()), |(file, drawing)| write_file(file, drawing))?;
-        let mended = checked.tune(&self.robot, self.engine, context.stop)?;
-        let file = &checked.source.file;
+        let mended = checked.tune(context.stop)?;
         let remedy = mended.as_ref().map_or(String::new(), |tuned| match tuned.inserts() {
             true => {
-                format!("{}next          optimize task tune {file}\n", brief("mended by", tuned))
+                format!("{}next          {}\n", brief("mended by", tuned), checked.tune_command())
             }
             false => format!("mended by     none of the strategies tried: {}\n", tried(tuned)),
         });

@@ -5,9 +5,9 @@ use crate::context::{Context, not_stopped};
 use crate::failure::{Failure, within};
 use crate::layout::wrapped;
 use crate::setup::bodies::{PairRequest, parts};
-use crate::setup::files::check_is_new;
+use crate::setup::files::{check_is_new, robot};
 use crate::setup::mated::{MatedTask, left_out_json, mated};
-use crate::setup::request::DEFAULT_ROBOT;
+use crate::setup::request::RobotRequest;
 use crate::setup::task::{TaskCheck, TaskFile, read_task};
 use crate::setup::tune::{brief, chosen, tune_new};
 use connector::body::width;
@@ -18,7 +18,6 @@ use connector::write::{self, Notes};
 use input::shipped::Source;
 use input::units::MM;
 use insertion::task::parts_file::{PartsFile, joined, sha256};
-use insertion::trial::engine::EngineKind;
 use serde_json::{Value, json};
 use std::path::Path;
 use study::write_file;
@@ -44,9 +43,9 @@ pub struct Request {
     /// Plug, socket and their mate.
     #[command(flatten)]
     pub pair: PairRequest,
-    /// Contact engine for the nominal start
-    #[arg(long, value_enum, default_value_t)]
-    pub engine: EngineKind,
+    /// Robot and contact engine.
+    #[command(flatten)]
+    pub robot: RobotRequest,
     /// Names of plug and socket in messages and in the task file [default: their paths]
     #[arg(long, hide = true, num_args = 2, allow_hyphen_values = true)]
     pub names: Vec<String>,
@@ -62,13 +61,14 @@ impl command::Request for Request {
         let handle = self.pair.body.map_or(Ok(()), check_handle);
         handle.map_err(|problem| Failure::usage(format!("--body: {problem}")))?;
         check_is_new(out)?;
+        robot(&self.robot.name)?;
         let mut mated = self.mated_task(context)?;
         not_stopped(stop)?;
         let _busy = context.busy("trying strategies");
-        let (task, tuned) = tune_new(mated.made.task, self.engine, stop)?;
+        let (task, tuned) = tune_new(mated.made.task, &self.robot, stop)?;
         mated.made.task = task;
         let written = self.write(out, &mated)?;
-        let checked = TaskCheck::of(written.source, DEFAULT_ROBOT, self.engine, stop)?;
+        let checked = TaskCheck::of(written.source, &self.robot, stop)?;
         let tuned = tuned.as_ref();
         let text = text(&self.names(), &mated, tuned, &checked);
         let failure = checked.failure_of_new(tuned);

@@ -4,8 +4,8 @@ use crate::command::{self, Output};
 use crate::context::Context;
 use crate::failure::Failure;
 use crate::layout::wrapped;
-use crate::setup::files::check_is_new;
-use crate::setup::request::DEFAULT_ROBOT;
+use crate::setup::files::{check_is_new, robot};
+use crate::setup::request::RobotRequest;
 use crate::setup::task::{TaskCheck, TaskFile, read_task};
 use crate::setup::tune::{brief, chosen, tune_new};
 use connector::draft::{self, Dimensions, Hole, Size};
@@ -15,7 +15,6 @@ use connector::write::{self, Notes};
 use input::shipped::Source;
 use input::units::MM;
 use insertion::task::checked_name;
-use insertion::trial::engine::EngineKind;
 use parameters::numbers;
 use serde_json::json;
 use std::path::PathBuf;
@@ -78,15 +77,17 @@ pub struct Request {
     /// File to write [default: NAME.toml]
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
-    /// Contact engine for the nominal start
-    #[arg(long, value_enum, default_value_t)]
-    pub engine: EngineKind,
+    /// Robot and contact engine.
+    #[command(flatten)]
+    pub robot: RobotRequest,
 }
 
 impl command::Request for Request {
     const PROGRESS: bool = true;
 
     fn run(&self, context: &Context<'_>) -> Result<Output, Failure> {
+        // Checked before a file is written.
+        robot(&self.robot.name)?;
         let _busy = context.busy("trying strategies");
         let like = self.like.as_deref().map(read_task).transpose()?;
         let (text, tuned) = match (&like, tip(self)) {
@@ -99,7 +100,7 @@ impl command::Request for Request {
         let written = TaskFile::parse(Source { file: file.clone(), text })?;
         check_is_new(&out)?;
         write_file(&out, &written.source.text)?;
-        let checked = TaskCheck::of(written.source, DEFAULT_ROBOT, self.engine, context.stop)?;
+        let checked = TaskCheck::of(written.source, &self.robot, context.stop)?;
         let tuned = tuned.as_ref();
         let strategy = tuned.map_or(String::new(), |tuned| brief("strategy", tuned));
         let text = format!("written       {file}\n{strategy}{}", checked.text_of_new());
@@ -129,7 +130,7 @@ fn drafted(
         (None, true) => format!("--round {}", mm(&[size.plug.width, size.plug.length])),
         (None, false) => format!("--plug {}", text(&size.plug)),
     };
-    let (name, clearance_mm) = (&request.name, size.clearance / MM);
+    let (name, clearance_mm) = (&request.name, mm(&[size.clearance]));
     let key = size.key.map_or(String::new(), |key| format!(" --key {}", mm(&key)));
     let leg = size.chamfer.map_or(String::new(), |leg| format!(" --chamfer-mm {}", mm(&[leg])));
     let command =
@@ -146,7 +147,7 @@ fn drafted(
     if example {
         head.push("No dimensions were given: these are of a USB-C plug.".to_owned());
     }
-    let (task, tuned) = tune_new(task, request.engine, stop)?;
+    let (task, tuned) = tune_new(task, &request.robot, stop)?;
     Ok((write::task(&task, &Notes { head, ..Notes::default() }), tuned))
 }
 

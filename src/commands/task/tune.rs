@@ -5,7 +5,7 @@ use crate::context::{Context, not_stopped};
 use crate::failure::Failure;
 use crate::layout::{lines, wrapped};
 use crate::setup::files::{check_is_new, robot};
-use crate::setup::request::{DEFAULT_ROBOT, TaskSource};
+use crate::setup::request::{RobotRequest, TaskSource};
 use crate::setup::task::TaskFile;
 use crate::setup::tune::{outcome, ranges, step_json, tilt_text, tried, turned_text};
 use crate::setup::words::parse_number;
@@ -20,7 +20,6 @@ use insertion::finger::Finger;
 use insertion::robot::Robot;
 use insertion::task::parts_file::without_parts;
 use insertion::task::{Limits, Strategy, Task};
-use insertion::trial::engine::EngineKind;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
@@ -31,18 +30,15 @@ use study::write_file;
 /// First the start is taught with a medium finger; then the strategies of the shipped tasks are tried, scaled to
 /// this opening; then tilt, strokes, preload and push speed are optimized for the smallest range of a soft, a
 /// medium and a stiff finger. Exit code 1 if nothing inserts. Ctrl-C writes the best strategy so far.
-#[derive(Debug, Clone, Default, clap::Args)]
+#[derive(Debug, Clone, clap::Args)]
 #[command(display_order = 5, after_help = "Example: optimize task tune mine.toml --svg mine.svg")]
 pub struct Request {
     /// Task file, which is rewritten; or the name of a shipped task, with --out
     #[arg(value_name = "FILE")]
     pub file: String,
-    /// Robot: see `optimize robots`, or the path of a robot file
-    #[arg(long, value_name = "NAME", default_value = DEFAULT_ROBOT)]
-    pub robot: String,
-    /// Contact engine
-    #[arg(long, value_enum, default_value_t)]
-    pub engine: EngineKind,
+    /// Robot and contact engine.
+    #[command(flatten)]
+    pub robot: RobotRequest,
     /// Seed of the search
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub seed: u64,
@@ -78,6 +74,8 @@ struct TunedTask<'a> {
     after: Option<Candidate>,
     /// The file that was written, if one was.
     written: Option<&'a Path>,
+    /// Robot and engine.
+    with: &'a RobotRequest,
 }
 
 impl command::Request for Request {
@@ -95,7 +93,7 @@ impl command::Request for Request {
             let problem = format!("{text}; {more}");
             return Err(Failure::task(Place::file(file).key(key).fault(problem)));
         }
-        let robot = robot(&self.robot)?;
+        let robot = robot(&self.robot.name)?;
         let tuner = self.tuner(&file.task, &robot, stop);
         let report = |what: &str, cost: usize, done, of| {
             context.part(what, [done, of], cost as f64);
@@ -116,7 +114,7 @@ impl command::Request for Request {
             };
             written = target.filter(|_| !self.dry_run);
         }
-        let done = TunedTask { tuner, tuned, after, written };
+        let done = TunedTask { tuner, tuned, after, written, with: &self.robot };
         let output = Output::new(wrapped(&text(&done)), json(&done));
         Ok(Output { failure: failure(&self.file, &done), ..output })
     }
@@ -125,7 +123,7 @@ impl command::Request for Request {
 impl Request {
     /// Returns the tuner of a task, with the limits given on the command line.
     fn tuner<'a>(&self, task: &'a Task, robot: &'a Robot, stop: &'a AtomicBool) -> Tuner<'a> {
-        let mut tuner = Tuner::new(task, robot, self.engine, stop);
+        let mut tuner = Tuner::new(task, robot, self.robot.engine, stop);
         let given =
             Limits { force: self.max_force_n, speed: self.max_speed_mm_per_s.map(|v| v * MM) };
         tuner.limits = given.or(tuner.limits);
@@ -195,8 +193,9 @@ impl Request {
         };
         self.save(file, &rewritten(file, tuned)?, Some(target))?;
         let (best, target) = (outcome(tuned.best()), target.display());
+        let command = self.robot.command("task tune", &target);
         let hint = format!(
-            "{target} has the best strategy so far ({best}); search on from it with: optimize task tune {target}"
+            "{target} has the best strategy so far ({best}); search on from it with: {command}"
         );
         Ok(Failure::Interrupted(Some(hint)))
     }
@@ -234,7 +233,7 @@ fn push_speed_mm_per_s(strategy: &Strategy) -> f64 {
     strategy.phases.last().map_or(0.0, |push| (push.speed / MM * 10.0).round() / 10.0)
 }
 
-fn json(TunedTask { tuner, tuned, after, written }: &TunedTask<'_>) -> Value {
+fn json(TunedTask { tuner, tuned, after, written, .. }: &TunedTask<'_>) -> Value {
     let Tuner { task, fingers, limits, .. } = tuner;
     let (best, first) = (tuned.best(), &tuned.steps[0].tried);
     let state = |after: &Candidate| strategy_json(&best.tried.strategy, after, fingers);
@@ -270,7 +269,7 @@ fn failure(file: &str, TunedTask { tuner, tuned, after, .. }: &TunedTask<'_>) ->
 }
 
 fn text(done: &TunedTask<'_>) -> String {
-    let TunedTask { tuner, tuned, after, written } = done;
+    let TunedTask { tuner, tuned, after, written, with } = done;
     let Tuner { task, fingers, others, .. } = tuner;
     let line = |name: &str, text: String| (name.to_owned(), text);
     let mut all = vec![
@@ -313,7 +312,7 @@ fn text(done: &TunedTask<'_>) -> String {
         }
     }
     all.push(line("windows", format!("{} measured", tuned.windows)));
-    all.extend(written.map(|path| line("next", format!("optimize --task {}", path.display()))));
+    all.extend(written.map(|path| line("next", with.command("--task", path.display()))));
     lines(all)
 }
 

@@ -2,7 +2,7 @@
 
 use super::{Experiment, NOT_MEASURABLE};
 use csv::StringRecord;
-use input::{InputError, Place};
+use input::{InputError, Place, shown};
 use insertion::outcome::FailureClass;
 use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design};
 use jiff::Timestamp;
@@ -168,7 +168,7 @@ fn number(text: &str) -> Result<f64, String> {
 fn density(text: &str) -> Result<f64, String> {
     match number(text)? {
         share if share > 0.0 && share < 1.0 => {
-            Err(format!("{share} looks like a share; give percent, as in {}", 100.0 * share))
+            Err(format!("{share} looks like a share; give percent, as in {}", shown(100.0 * share)))
         }
         percent if percent > 0.0 && percent <= 100.0 => Ok(percent),
         other => Err(format!("is {other}; it must be above 0 and at most 100 percent")),
@@ -190,12 +190,14 @@ fn direction(text: &str) -> Result<f64, String> {
 /// Parses a length, mm.
 pub(crate) fn length(text: &str) -> Result<f64, String> {
     match number(text)? {
-        long if long.abs() > LARGEST_LENGTH_MM => {
-            Err(format!("{long} looks like micrometres; give millimetres, as in {}", long / 1e3))
-        }
-        short if short != 0.0 && short.abs() < MIN_LENGTH_MM => {
-            Err(format!("{short} looks like metres; give millimetres, as in {}", short * 1e3))
-        }
+        long if long.abs() > LARGEST_LENGTH_MM => Err(format!(
+            "{long} looks like micrometres; give millimetres, as in {}",
+            shown(long / 1e3)
+        )),
+        short if short != 0.0 && short.abs() < MIN_LENGTH_MM => Err(format!(
+            "{short} looks like metres; give millimetres, as in {}",
+            shown(short * 1e3)
+        )),
         length => Ok(length),
     }
 }
@@ -229,9 +231,10 @@ fn repeats(text: &str) -> Result<u32, String> {
 /// Parses a peak force, N.
 fn force(text: &str) -> Result<f64, String> {
     match number(text)? {
-        large if large > LARGEST_FORCE_N => {
-            Err(format!("{large} looks like millinewtons; give newtons, as in {}", large / 1e3))
-        }
+        large if large > LARGEST_FORCE_N => Err(format!(
+            "{large} looks like millinewtons; give newtons, as in {}",
+            shown(large / 1e3)
+        )),
         below if below < 0.0 => Err(format!("is {below}; a largest force is 0 or above")),
         force => Ok(force),
     }

@@ -38,9 +38,9 @@ fn partial_data_are_data() {
 #[test]
 fn what_looks_wrong_is_told_with_line_and_column() {
     for (line, column, words) in [
-        ("ket8,0.2,0,,,7,,,,", DENSITY_KEY, "looks like a share; give percent, as in 20"),
+        ("ket8,0.07,0,,,7,,,,", DENSITY_KEY, "looks like a share; give percent, as in 7"),
         ("ket8,20,0.52,,,7,,,,", DIRECTION_KEY, "looks like radians; give degrees, as in 30"),
-        ("ket8,20,0,,,0.0076,,,,", "range_mm", "looks like metres"),
+        ("ket8,20,0,,,0.0041,,,,", "range_mm", "looks like metres; give millimetres, as in 4.1"),
         ("ket8,20,0,,,7600,,,,", "range_mm", "micrometres; give millimetres, as in 7.6"),
         ("ket8,20,0,0.5,2.5,,,,,", "negative_mm", "excludes 0"),
         ("ket8,20,0,-2.5,-0.5,,,,,", "positive_mm", "excludes 0"),

@@ -1,7 +1,7 @@
 //! Remote centre and coupled springs of the fingers, from a task file.
 
 use input::units::{MM, read::mm};
-use input::{Check, InputError};
+use input::{Check, InputError, shown};
 use nalgebra::Matrix6;
 use serde::Deserialize;
 
@@ -117,7 +117,7 @@ pub(super) fn finger(check: Check<'_>, raw: &RawFinger) -> Result<FingerModel, I
     if let Some(last) = raw.rcc.map(|rcc| rcc.at(MAX_DIRECTION_DEG) / MM)
         && last <= 0.0
     {
-        let problem = format!("is {last} mm at 90 degrees; it must stay above 0");
+        let problem = format!("is {} mm at 90 degrees; it must stay above 0", shown(last));
         return check.fail("finger.rcc_mm", problem);
     }
     Ok(FingerModel { rcc: raw.rcc, coupling: coupling(check, &raw.coupling)? })

@@ -2,6 +2,7 @@
 
 use super::trust::Trust;
 use super::{Answer, Verdict};
+use input::files::shell_word;
 use input::shipped::{
     FINGERS, MEASUREMENTS, ROBOTS, SPACES, STIFFNESS, Shipped, TASKS, UNCERTAINTIES,
 };
@@ -34,15 +35,15 @@ impl InputArguments<'_> {
         let segment = self.record.segments.len().max(1);
         match self.shipped(role, shipped) {
             Some(name) => name.to_owned(),
-            None => input_path(self.dir, segment, role).display().to_string(),
+            None => shell_word(input_path(self.dir, segment, role).display()),
         }
     }
 
     /// Returns the user's own file of the task at `place`; `None` if it was passed as text from Python.
-    fn own_file(&self, place: usize) -> Option<&String> {
+    fn own_file(&self, place: usize) -> Option<String> {
         let own = self.shipped(&format!("task_{}", place + 1), TASKS).is_none();
         let files = &self.record.config.conclusion.task_files;
-        files.get(place).filter(|file| own && file.ends_with(".toml"))
+        files.get(place).filter(|file| own && file.ends_with(".toml")).map(shell_word)
     }
 }
 
@@ -51,26 +52,27 @@ const PRINTS: usize = 3;
 
 /// Returns the next step as a complete command, and its purpose; `dir` is the study's folder.
 pub fn next(answer: &Answer, dir: &Path) -> (String, &'static str) {
+    let folder = shell_word(dir.display());
     if answer.record.unfinished() {
-        return (format!("optimize resume {}", dir.display()), "continue the unfinished study");
+        return (format!("optimize resume {folder}"), "continue the unfinished study");
     }
     let inputs = InputArguments { record: answer.record, dir };
     let several = answer.record.config.several_tasks();
     // Measurements refer to the name of the user's file, not to that of its copy.
-    let task = inputs.own_file(0).cloned().unwrap_or_else(|| inputs.input("task_1", TASKS));
+    let task = inputs.own_file(0).unwrap_or_else(|| inputs.input("task_1", TASKS));
     match (&answer.verdict, &answer.trust) {
         (Verdict::NothingInserts { place, .. }, _) => repair(answer.record, dir, *place),
         (Verdict::NoneFeasible, _) => (
-            format!("optimize report {}", dir.display()),
+            format!("optimize report {folder}"),
             "see by how much each design violates the constraints",
         ),
         (_, Trust::Calibrated { .. } | Trust::Published { .. }) if !several => {
-            let given = answer.record.config.conclusion.measurements.clone();
+            let given = &answer.record.config.conclusion.measurements;
             let shipped = match answer.record.on_bench {
                 None => Some(MEASUREMENTS[0].name),
                 Some(_) => inputs.shipped("measurements", MEASUREMENTS),
             };
-            let file = shipped.map(str::to_owned).or(given);
+            let file = shipped.map(str::to_owned).or(given.as_ref().map(shell_word));
             let file = file.unwrap_or_else(|| inputs.input("measurements", MEASUREMENTS));
             let options = format!("--task {task} --measurements {file} --count {PRINTS}");
             let why = match (&answer.verdict, &answer.record.on_bench) {
@@ -99,7 +101,7 @@ pub fn repair(record: &StudyRecord, dir: &Path, place: usize) -> (String, &'stat
     if let Some(shipped) = inputs.shipped(&role, TASKS) {
         return (format!("optimize task check {shipped}"), "find out why nothing inserts");
     }
-    let file = inputs.own_file(place).cloned().unwrap_or_else(|| {
+    let file = inputs.own_file(place).unwrap_or_else(|| {
         format!("{} --out {}.toml", inputs.input(&role, TASKS), record.config.tasks[place])
     });
     (format!("optimize task tune {file}"), "find a start and a strategy that insert")

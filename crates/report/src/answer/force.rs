@@ -29,7 +29,7 @@ impl ExcessForce {
             }
             let connector = limits.connectors.get(place).copied().flatten();
             let connector = connector.filter(|&limit| peak_force_n > limit);
-            let limit_n = connector.or(limits.stop)?;
+            let limit_n = connector.or(limits.robot.as_ref().map(|robot| robot.stop_force))?;
             let of_connector = connector.is_some();
             Some(ExcessForce { task: task.to_owned(), peak_force_n, limit_n, of_connector })
         };

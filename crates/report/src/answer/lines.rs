@@ -8,6 +8,7 @@ use insertion::evaluation::objective::Measure;
 use insertion::evaluation::robustness::firm::REPEATS;
 use insertion::evaluation::{Evaluation, grid_mm};
 use insertion::outcome::Outcome;
+use insertion::robot::Robot;
 use insertion::space::{Variable, label};
 use insertion::surrogate::Prediction;
 use std::iter;
@@ -109,7 +110,9 @@ pub fn caveats(answer: &Answer) -> Vec<Line> {
         let distance = format!("{:.2} of the measured span", of.hull_distance);
         line("warning", format!("stiffness extrapolated by {distance}: measure this finger"))
     });
-    advice.into_iter().chain(extrapolated).chain(warnings).collect()
+    let robot = answer.record.limits.robot.as_ref().and_then(Robot::remark);
+    let robot = robot.map(|text| line("warning", text));
+    advice.into_iter().chain(extrapolated).chain(warnings).chain(robot).collect()
 }
 
 /// Returns a contact force above the limit of connector or robot, with a remedy.

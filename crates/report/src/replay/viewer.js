@@ -323,10 +323,10 @@
   curve("tilt", "tilt", "°");
   curve("slip in the grasp", "slip", "mm");
   window.addEventListener("resize", refresh);
-  // The search is what one has come to see.
+  // In a report, playback begins with the search.
   const grasp = films[0].phases.findIndex(([name]) => name === "carry");
   const begin = grasp >= 0 ? films[0].phases[grasp][1] : 0;
-  seekTo(compact ? end : begin);
+  seekTo(compact ? end : 0);
   if (compact) {
     window.addEventListener("message", ({ source }) => { if (source === window.parent) play(!state.playing); });
     window.parent.postMessage(document.querySelector("canvas") ? "ready" : "picture", "*");

@@ -8,6 +8,7 @@ use ask_tell::stream::stream;
 use input::units::MM;
 use rand::RngExt;
 use rayon::prelude::*;
+use std::cell::Cell;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Largest relative change of the two coefficients of friction, which vary independently.
@@ -69,10 +70,11 @@ impl<'a> Repeats<'a> {
         outcomes.iter().filter(|&&outcome| outcome == Outcome::Inserted).count()
     }
 
-    /// Returns the band at the negative (`sign` -1) or positive (`sign` 1) end of a window.
-    fn band(&self, window: &Window, sign: OffsetStep) -> Band {
+    /// Returns the band at the negative (`sign` -1) or positive (`sign` 1) end of a window, from the number of repeats
+    /// that insert at an offset.
+    fn band(&self, window: &Window, sign: OffsetStep, of: &dyn Fn(OffsetStep) -> usize) -> Band {
         let end = if sign < 0 { -window.negative_steps } else { window.positive_steps };
-        let inserted = |step: OffsetStep| self.inserted(sign * step);
+        let inserted = |step: OffsetStep| of(sign * step);
         let inward = (0..=REACH.min(end)).map(|away| end - away);
         // From outside, since some repeats may insert again beyond a gap.
         let outward = (1..=REACH).rev().map(|away| end + away);
@@ -84,13 +86,22 @@ impl<'a> Repeats<'a> {
         }
     }
 
-    /// Returns both bands of a window, and the results of the offsets tried between them.
-    pub fn bands(&self, window: &Window) -> Bands {
-        let [negative, positive] = [-1, 1].map(|sign| self.band(window, sign));
+    /// Returns both bands of a window, and the results of the offsets tried between them. Calls `progress` with the
+    /// number of offsets tried so far and the one expected.
+    pub fn bands(&self, window: &Window, progress: &dyn Fn([usize; 2])) -> Bands {
+        let width = window.positive_steps.saturating_sub(window.negative_steps);
+        let expected = (2 * REACH + width / INSIDE_STRIDE) as usize;
+        let count = Cell::new(0);
+        let inserted = |step: OffsetStep| {
+            progress([count.get(), expected.max(count.get() + 1)]);
+            count.set(count.get() + 1);
+            self.inserted(step)
+        };
+        let [negative, positive] = [-1, 1].map(|sign| self.band(window, sign, &inserted));
         let inside = negative.surely_inserts.zip(positive.surely_inserts).into_iter();
         let tried = inside.flat_map(|(from, to)| (-from..=to).step_by(INSIDE_STRIDE as usize));
         let tried: Vec<OffsetStep> = tried.collect();
-        let uncertain = |step: &&OffsetStep| self.inserted(**step) < self.runs.len();
+        let uncertain = |step: &&OffsetStep| inserted(**step) < self.runs.len();
         let uncertain_inside = tried.iter().filter(uncertain).map(|&step| grid_mm(step)).collect();
         Bands { negative, positive, tried_inside: tried.len(), uncertain_inside }
     }
@@ -148,7 +159,7 @@ mod tests {
         let rig = FakeRig::default();
         let repeats = Repeats::new([&rig, &rig], Grasp::of(&finger(3.0, 20.0)), 7, 200);
         let window = tolerance::evaluate(&rig, &finger(3.0, 20.0), Search::Walk).window;
-        let bands = repeats.bands(&window);
+        let bands = repeats.bands(&window, &|_| ());
         let below = bands.negative.width_mm().unwrap();
         assert!((0.5..=0.7).contains(&below), "{bands:?}");
         let above = bands.positive.width_mm().unwrap();

@@ -3,7 +3,7 @@
 
 use crate::compare::{Setting, TaskSettings, pairs};
 use crate::validate::{Fingers, search_name, tasks};
-use crate::{Failure, print, print_json};
+use crate::{Failure, print};
 use clap::Args;
 use contact::Engine;
 use finger_opt::setup::files;
@@ -40,9 +40,6 @@ pub struct Arguments {
     /// Robot of the windows
     #[arg(long, value_name = "NAME", default_value = DEFAULT_ROBOT, requires = "windows")]
     robot: String,
-    /// Print the windows as JSON
-    #[arg(long, requires = "windows")]
-    json: bool,
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -68,16 +65,10 @@ impl Arguments {
         let engine = || self.engine.build(1.0);
         let tasks = tasks(&self.task)?.into_iter().map(|task| settings(task, &robot, engine()));
         let tasks = tasks.collect::<Result<Vec<_>, _>>()?;
-        let (allowed, setting, keys) = match self.convergence {
-            true => (ALLOWED_STEPS, "finer", ["production", "refined"]),
-            false => (0, "search", ["walk", "strides"]),
-        };
+        let allowed = if self.convergence { ALLOWED_STEPS } else { 0 };
         let found = pairs::simulate(&tasks, &self.fingers.designs());
         let failed = found.iter().filter(|pair| !pair.agrees(allowed)).count();
-        match self.json {
-            true => print_json(&pairs::json(&found, Some(allowed), setting, keys).into())?,
-            false => print(&pairs::text(&found, Some(allowed)))?,
-        }
+        print(&pairs::text(&found, Some(allowed)))?;
         verdict("windows", failed, found.len())
     }
 }

@@ -1,11 +1,10 @@
 //! Windows of the same fingers in two settings, and the differences of their ends.
 
-use super::{Setting, Subject, TaskSettings, each, subject_json, window_json, window_words};
+use super::{Setting, Subject, TaskSettings, each, window_words};
 use ask_tell::statistics::mean;
 use insertion::evaluation::{Evaluation, OffsetStep, Window, grid_mm};
 use insertion::stiffness::Measurement;
 use report::text_table;
-use serde_json::{Value, json};
 
 /// Windows of a finger in two settings.
 #[derive(Debug, Clone, PartialEq)]
@@ -99,30 +98,4 @@ fn summary(pairs: &[WindowPair]) -> String {
         "same ends in {same} of {all}; ranges differ by {average:.2} mm in the mean, {most:.1} mm at most\n\
          trials: {first} against {second}\n"
     )
-}
-
-/// Returns a JSON list. `setting` is the key under which the second setting's name is written, `windows` are the keys
-/// of both windows; `allowed` as for [`text`].
-pub fn json(
-    pairs: &[WindowPair],
-    allowed: Option<OffsetStep>,
-    setting: &str,
-    windows: [&str; 2],
-) -> Vec<Value> {
-    let row = |pair: &WindowPair| {
-        let [below, above] = pair.moved_mm();
-        let [first, second] = pair.windows.each_ref().map(window_json);
-        let results = json!({
-            setting: pair.settings[1],
-            windows[0]: first,
-            windows[1]: second,
-            "trials": pair.trials,
-            "negative_moved_mm": below,
-            "positive_moved_mm": above,
-            "allowed_mm": allowed.map(grid_mm),
-            "passed": allowed.map(|allowed| pair.agrees(allowed)),
-        });
-        subject_json(&pair.subject.task, &pair.subject.design, results)
-    };
-    pairs.iter().map(row).collect()
 }

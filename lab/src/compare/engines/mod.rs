@@ -8,14 +8,13 @@
 mod tests;
 
 use super::pairs::{self, WindowPair};
-use super::{Setting, Subject, TaskSettings, each, subject_json};
+use super::{Setting, Subject, TaskSettings, each};
 use ask_tell::statistics::{quantile, sorted};
 use insertion::evaluation::{OffsetStep, Window, grid_mm, tolerance};
 use insertion::outcome::Outcome;
 use insertion::stiffness::Measurement;
 use insertion::trial::{Grasp, Trial};
 use report::text_table;
-use serde_json::{Value, json};
 use std::collections::BTreeSet;
 
 /// Smallest accepted fraction of the trials on which the engines agree.
@@ -162,28 +161,4 @@ pub fn text(check: &CrossCheck, [first, second]: [&str; 2]) -> String {
     });
     let head = ["task", "finger", "offset mm", "beyond end mm", first, second];
     text + "\n" + &text_table(2, head, rows)
-}
-
-pub fn json(check: &CrossCheck, names: [&str; 2]) -> Value {
-    let trial = |pair: &TrialPair| {
-        let results = json!({
-            "finger": pair.subject.infill(),
-            "offset_mm": grid_mm(pair.offset),
-            "beyond_end_mm": grid_mm(pair.from_end),
-            "outcomes": pair.outcomes.map(Outcome::label),
-            "agrees": pair.agrees(),
-            "tip_distance_mm": pair.tip_mm,
-        });
-        subject_json(&pair.subject.task, &pair.subject.design, results)
-    };
-    json!({
-        "engines": names,
-        "agreement": check.agreement(),
-        "agreement_target": AGREEMENT,
-        "end_difference_mm": check.end_difference_mm(),
-        "end_difference_target_mm": END_DIFFERENCE_MM,
-        "passed": check.passed(),
-        "trials": check.trials.iter().map(trial).collect::<Vec<_>>(),
-        "windows": pairs::json(&check.windows, None, "engine", ["first", "second"]),
-    })
 }

@@ -41,10 +41,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         let setting = |engine: EngineKind| {
             let rig = engine.rig(&task, &robot, &FingerSource::Paper.example(&task), 1.0);
             let rig = rig.map_err(Failure::input)?.into();
-            Ok(Setting { name: engine.name(), rig, search: Search::Strides })
+            Ok::<_, Failure>(Setting { name: engine.name(), rig, search: Search::Strides })
         };
-        let settings = kinds.into_iter().map(setting).collect::<Result<_, Failure>>()?;
-        Ok(TaskSettings { task, settings })
+        let [first, second] = kinds.map(setting);
+        Ok(TaskSettings { settings: [first?, second?], task })
     };
     let tasks = tasks(&arguments.task)?.into_iter().map(settings);
     let tasks = tasks.collect::<Result<Vec<_>, Failure>>()?;

@@ -198,11 +198,7 @@ mod tests {
     fn errors_name_file_key_and_accepted_values() {
         for (from, to, parts) in [
             ("modulus_gpa = 2.0", "modulus_gpa = 0.0", ["material.modulus_gpa", "0.0001 .. 500"]),
-            (
-                "modulus_gpa = 2.0",
-                "modulus_gpa = 2000.0",
-                ["material.modulus_gpa: is 2000", ".. 500"],
-            ),
+            ("modulus_gpa = 2.0", "modulus_gpa = 2000.0", ["modulus_gpa: is 2000", ".. 500"]),
             ("pad_mm = 9.0", "pad_mm = 0.0", ["notch.pad_mm", "1e-9 .. 500"]),
             ("length_mm = 52.8", "length_mm = 52800.0", ["outline.length_mm", "1e-9 .. 500"]),
             ("poisson = 0.4", "poisson = 0.6", ["material.poisson", "0 .. 0.5"]),

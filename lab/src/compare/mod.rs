@@ -20,7 +20,6 @@ use rayon::prelude::*;
 use std::sync::Arc;
 
 /// Method by which windows on a task are determined: engine with its step, and search.
-#[derive(Clone)]
 pub struct Setting {
     pub name: String,
     pub rig: Arc<dyn Rig>,
@@ -33,10 +32,10 @@ impl Setting {
     }
 }
 
-/// Task and the settings in which its windows are simulated, the reference first.
+/// Task and the two settings in which its windows are simulated, the reference first.
 pub struct TaskSettings {
     pub task: Task,
-    pub settings: Vec<Setting>,
+    pub settings: [Setting; 2],
 }
 
 /// Measured finger on a task.
@@ -65,7 +64,7 @@ impl Subject {
 pub fn each<T: Send>(
     tasks: &[TaskSettings],
     designs: &[Measurement],
-    simulate: impl Fn(&Subject, &[Setting]) -> T + Sync,
+    simulate: impl Fn(&Subject, &[Setting; 2]) -> T + Sync,
 ) -> Vec<T> {
     let pairs: Vec<_> =
         tasks.iter().flat_map(|task| designs.iter().map(move |d| (task, d))).collect();

@@ -16,10 +16,10 @@ pub struct WindowPair {
 }
 
 impl WindowPair {
-    pub fn new(subject: &Subject, settings: [&Setting; 2], found: [&Evaluation; 2]) -> Self {
+    pub fn new(subject: &Subject, settings: &[Setting; 2], found: [&Evaluation; 2]) -> Self {
         WindowPair {
             subject: subject.clone(),
-            settings: settings.map(|setting| setting.name.clone()),
+            settings: settings.each_ref().map(|setting| setting.name.clone()),
             windows: found.map(|evaluation| evaluation.window.clone()),
             trials: found.map(|evaluation| evaluation.trials),
         }
@@ -42,18 +42,12 @@ impl WindowPair {
     }
 }
 
-/// Returns the pairs of windows in the first setting and in each of the others, for every design on every task.
+/// Returns the pair of windows for every design on every task.
 pub fn simulate(tasks: &[TaskSettings], designs: &[Measurement]) -> Vec<WindowPair> {
-    let pairs = each(tasks, designs, |subject, settings| {
-        let Some((first, others)) = settings.split_first() else { return Vec::new() };
-        let reference = first.evaluate(&subject.finger);
-        let pair = |other: &Setting| {
-            let found = other.evaluate(&subject.finger);
-            WindowPair::new(subject, [first, other], [&reference, &found])
-        };
-        others.iter().map(pair).collect()
-    });
-    pairs.concat()
+    each(tasks, designs, |subject, settings| {
+        let found = settings.each_ref().map(|setting| setting.evaluate(&subject.finger));
+        WindowPair::new(subject, settings, found.each_ref())
+    })
 }
 
 /// Returns the mean absolute shift of an end from the first window to the second, mm; `None` without pairs.

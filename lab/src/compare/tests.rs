@@ -55,18 +55,14 @@ fn the_representative_designs_span_the_measured_stiffness() {
 }
 
 #[test]
-fn every_way_but_the_first_makes_a_pair_and_the_table_fits_a_terminal() {
+fn both_searches_make_a_pair_and_the_table_fits_a_terminal() {
     let task = Task::parse(TASKS[0].text, TASKS[0].file).unwrap();
-    let settings = vec![
-        setting("walk", Search::Walk),
-        setting("strides", Search::Strides),
-        setting("again", Search::Walk),
-    ];
+    let settings = [setting("walk", Search::Walk), setting("strides", Search::Strides)];
     let found = pairs::simulate(&[TaskSettings { task, settings }], &representative_designs());
     let names: Vec<&str> = found.iter().map(|pair| pair.settings[1].as_str()).collect();
-    assert_eq!(names, ["strides", "again"].repeat(3));
+    assert_eq!(names, ["strides"; 3]);
     assert!(found.iter().all(|pair| pair.agrees(0) && pair.trials[0] > 10));
     let table = pairs::text(&[found, vec![pair(jammed(-33, 19))]].concat(), Some(1));
     assert!(table.lines().all(|line| line.len() <= 80), "{table}");
-    assert_eq!((table.matches("FAIL").count(), table.matches(" ok\n").count()), (1, 6), "{table}");
+    assert_eq!((table.matches("FAIL").count(), table.matches(" ok\n").count()), (1, 3), "{table}");
 }

@@ -58,7 +58,7 @@ impl TrialPair {
 }
 
 /// Result of check T9.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct CrossCheck {
     pub trials: Vec<TrialPair>,
     pub windows: Vec<WindowPair>,
@@ -81,22 +81,19 @@ impl CrossCheck {
     }
 }
 
-/// Compares the first two settings of every task; if `reduced`, by few trials and without the second window.
+/// Compares both settings of every task; if `reduced`, by few trials and without the second window.
 pub fn run(tasks: &[TaskSettings], designs: &[Measurement], reduced: bool) -> CrossCheck {
-    let results = each(tasks, designs, |subject, settings| match settings {
-        [first, second, ..] => in_both(subject, [first, second], reduced),
-        _ => CrossCheck::default(),
-    });
+    let results = each(tasks, designs, |subject, settings| in_both(subject, settings, reduced));
     let results = results.into_iter().map(|result| (result.trials, result.windows));
     let (trials, windows): (Vec<_>, Vec<_>) = results.unzip();
     CrossCheck { trials: trials.concat(), windows: windows.concat() }
 }
 
 /// Compares both settings by the trials of a finger.
-fn in_both(subject: &Subject, settings: [&Setting; 2], reduced: bool) -> CrossCheck {
+fn in_both(subject: &Subject, settings: &[Setting; 2], reduced: bool) -> CrossCheck {
     let reference = settings[0].evaluate(&subject.finger);
     let window = &reference.window;
-    let grasped = settings.map(|setting| setting.rig.grasp(Grasp::of(&subject.finger)));
+    let grasped = settings.each_ref().map(|setting| setting.rig.grasp(Grasp::of(&subject.finger)));
     let trial = |offset: OffsetStep| {
         let trials = grasped.each_ref().map(|grasped| grasped.trial(tolerance::offset(offset)));
         TrialPair {

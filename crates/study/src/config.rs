@@ -139,6 +139,7 @@ impl StudyConfig {
     /// # Errors
     /// The invalid field and its accepted values.
     pub fn check(&self) -> Result<(), String> {
+        self.space.check("[space]").map_err(|error| error.to_string())?;
         for (key, value, [least, most]) in [
             ("budget", self.budget, [1, LARGEST_BUDGET]),
             ("polish", self.polish, [0, LARGEST_BUDGET]),

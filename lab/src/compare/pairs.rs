@@ -50,11 +50,6 @@ pub fn simulate(tasks: &[TaskSettings], designs: &[Measurement]) -> Vec<WindowPa
     })
 }
 
-/// Returns the mean absolute shift of an end from the first window to the second, mm; `None` without pairs.
-pub fn mean_end_difference_mm(pairs: &[WindowPair]) -> Option<f64> {
-    mean(pairs.iter().flat_map(WindowPair::moved_mm).map(f64::abs))
-}
-
 /// Returns a table at most 80 columns wide with a summary; with verdicts, if an `allowed` shift of an end is given, in
 /// grid steps.
 pub fn text(pairs: &[WindowPair], allowed: Option<OffsetStep>) -> String {

@@ -40,8 +40,10 @@ fn an_end_may_move_by_as_much_as_is_allowed() {
     assert!(!pair(jammed(-33, 16)).agrees(1));
     let jams = Window { nominal: Outcome::Failed(FailureClass::Jammed), ..jammed(-33, 14) };
     assert!(!pair(jams).agrees(1));
-    assert_eq!(pairs::mean_end_difference_mm(&[moved, pair(jammed(-38, 14))]), Some(0.175));
-    assert_eq!(pairs::mean_end_difference_mm(&[]), None);
+    let difference_mm =
+        |windows| engines::CrossCheck { trials: Vec::new(), windows }.end_difference_mm();
+    assert_eq!(difference_mm(vec![moved, pair(jammed(-38, 14))]), Some(0.175));
+    assert_eq!(difference_mm(Vec::new()), None);
 }
 
 #[test]

@@ -9,7 +9,7 @@ mod tests;
 
 use super::pairs::{self, WindowPair};
 use super::{Setting, Subject, TaskSettings, each};
-use ask_tell::statistics::{quantile, sorted};
+use ask_tell::statistics::{mean, quantile, sorted};
 use insertion::evaluation::{OffsetStep, Window, grid_mm, tolerance};
 use insertion::outcome::Outcome;
 use insertion::stiffness::Measurement;
@@ -72,7 +72,7 @@ impl CrossCheck {
 
     /// Returns the mean difference of the windows' ends, mm; `None` without windows.
     pub fn end_difference_mm(&self) -> Option<f64> {
-        pairs::mean_end_difference_mm(&self.windows)
+        mean(self.windows.iter().flat_map(WindowPair::moved_mm).map(f64::abs))
     }
 
     pub fn passed(&self) -> bool {

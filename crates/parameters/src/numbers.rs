@@ -230,24 +230,30 @@ pub fn paths(kind: Kind) -> Vec<String> {
 /// Returns the error message for a number that is out of the bounds of its path; `None` if it is within them or the
 /// path is not in the table.
 pub fn problem(path: &str, value: f64) -> Option<String> {
-    let row = NUMBERS.iter().find(|number| matches(number.pattern, path))?;
-    out_of_bounds(value, row.bounds)
+    let (_, number) = filled_paths(path).find(|(known, _)| known == path)?;
+    out_of_bounds(value, number.bounds)
 }
 
-/// Returns whether a path matches a pattern; a name in place of `*` may contain dots.
-fn matches(pattern: &str, path: &str) -> bool {
-    let split = pattern.split_once('.');
-    let (word, rest) = (split.map_or(pattern, |(word, _)| word), split.map(|(_, rest)| rest));
-    let goes_on = |after: &str| match (rest, after.strip_prefix('.')) {
-        (Some(rest), Some(path)) => matches(rest, path),
-        (rest, _) => rest.is_none() && after.is_empty(),
+/// Returns every path of the table with its entry; each `*` is replaced by the word of `path` at its position.
+pub(crate) fn filled_paths(path: &str) -> impl Iterator<Item = (String, &'static NumberSpec)> {
+    let words: Vec<&str> = path.split('.').collect();
+    let all =
+        NUMBERS.iter().flat_map(|number| number.paths().into_iter().map(move |p| (p, number)));
+    all.map(move |(pattern, number)| (filled(&pattern, &words), number))
+}
+
+/// Returns a pattern with each `*` replaced by the word at its position. If there are more
+/// words than in the pattern, the first `*` takes several, since names may contain dots.
+fn filled(pattern: &str, words: &[&str]) -> String {
+    let own: Vec<&str> = pattern.split('.').collect();
+    let (mut at, mut more) = (0, words.len().saturating_sub(own.len()));
+    let fill = |word: &&str| {
+        let end = if *word == "*" { at + 1 + std::mem::take(&mut more) } else { at + 1 };
+        let taken = words.get(at..end).filter(|_| *word == "*");
+        at = end;
+        taken.map_or(word.to_string(), |words| words.join("."))
     };
-    if word == "*" {
-        let mut ends = path.match_indices('.').map(|(end, _)| end).chain([path.len()]);
-        ends.any(|end| goes_on(&path[end..]))
-    } else {
-        word.split('|').any(|one| path.strip_prefix(one).is_some_and(goes_on))
-    }
+    own.iter().map(fill).collect::<Vec<_>>().join(".")
 }
 
 /// Checks a number against the bounds of its path.

@@ -1,6 +1,6 @@
 //! Paths of numbers, checked against the table of all numbers.
 
-use crate::numbers::{Kind, NUMBERS, NumberSpec};
+use crate::numbers::{Kind, NumberSpec, filled_paths};
 use input::numbers::unknown_path;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -22,10 +22,8 @@ impl Path {
     /// If it is not in the table; the message suggests the closest match.
     pub fn new(text: impl Into<String>) -> Result<Self, String> {
         let text = text.into();
-        let words: Vec<&str> = text.split('.').collect();
-        let variable = NUMBERS.iter().filter(|number| number.kind != Kind::Fixed);
-        let all = variable.flat_map(|number| number.paths().into_iter().map(move |p| (p, number)));
-        let known: Vec<_> = all.map(|(path, number)| (filled(&path, &words), number)).collect();
+        let variable = |(_, number): &(String, &NumberSpec)| number.kind != Kind::Fixed;
+        let known: Vec<_> = filled_paths(&text).filter(variable).collect();
         match known.iter().find(|(path, _)| *path == text) {
             Some((_, number)) => Ok(Path { text, number }),
             None => {
@@ -50,20 +48,6 @@ impl Path {
     pub fn unit(&self) -> &'static str {
         label(self).1
     }
-}
-
-/// Returns the pattern `path` with each `*` replaced by the word at its position. If there are more
-/// words than in the pattern, the first `*` takes several, since names may contain dots.
-fn filled(path: &str, words: &[&str]) -> String {
-    let own: Vec<&str> = path.split('.').collect();
-    let (mut at, mut more) = (0, words.len().saturating_sub(own.len()));
-    let fill = |word: &&str| {
-        let end = if *word == "*" { at + 1 + std::mem::take(&mut more) } else { at + 1 };
-        let taken = words.get(at..end).filter(|_| *word == "*");
-        at = end;
-        taken.map_or(word.to_string(), |words| words.join("."))
-    };
-    own.iter().map(fill).collect::<Vec<_>>().join(".")
 }
 
 impl TryFrom<String> for Path {
@@ -136,7 +120,7 @@ pub fn label(path: &str) -> (String, &'static str) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::numbers::{DENSITY, FRICTION};
+    use crate::numbers::{DENSITY, FRICTION, NUMBERS};
     use input::Document;
     use input::numbers::NumberFile;
     use input::shipped::{FINGERS, ROBOTS, Shipped, TASKS};

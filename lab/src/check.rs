@@ -1,9 +1,9 @@
-//! `lab check`: compares an engine with closed-form solutions, or its windows with those at finer steps or by another
+//! `lab check`: compares an engine with closed-form solutions, or its windows with those at half the step or by another
 //! search.
 
 use crate::compare::{Setting, TaskSettings, pairs};
 use crate::validate::{Fingers, search_name, tasks};
-use crate::{Failure, print, print_json};
+use crate::{Failure, print};
 use clap::Args;
 use contact::Engine;
 use finger_opt::setup::files;
@@ -16,7 +16,7 @@ use insertion::trial::engine::EngineKind;
 use insertion::trial::run::EngineRig;
 use std::sync::Arc;
 
-/// Largest accepted shift of a window's end at a finer time step, in grid steps of 0.1 mm.
+/// Largest accepted shift of a window's end at half the time step, in grid steps of 0.1 mm.
 const ALLOWED_STEPS: OffsetStep = 1;
 
 /// Compare the contact engine with analytic results.
@@ -25,7 +25,7 @@ pub struct Arguments {
     /// Contact engine
     #[arg(long, value_enum, default_value_t)]
     engine: EngineKind,
-    /// Compare tolerance windows with finer ones instead
+    /// Compare tolerance windows with those at half the time step instead
     #[arg(long, group = "windows")]
     convergence: bool,
     /// Compare the windows of the exhaustive search with those of the coarse-to-fine search instead
@@ -40,9 +40,6 @@ pub struct Arguments {
     /// Robot of the windows
     #[arg(long, value_name = "NAME", default_value = DEFAULT_ROBOT, requires = "windows")]
     robot: String,
-    /// Print the windows as JSON
-    #[arg(long, requires = "windows")]
-    json: bool,
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -64,32 +61,26 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 impl Arguments {
     fn windows(&self) -> Result<(), Failure> {
         let robot = files::robot(&self.robot)?;
-        let settings = if self.convergence { finer } else { searches };
+        let settings = if self.convergence { steps } else { searches };
         let engine = || self.engine.build(1.0);
         let tasks = tasks(&self.task)?.into_iter().map(|task| settings(task, &robot, engine()));
         let tasks = tasks.collect::<Result<Vec<_>, _>>()?;
-        let (allowed, setting, keys) = match self.convergence {
-            true => (ALLOWED_STEPS, "finer", ["production", "refined"]),
-            false => (0, "search", ["walk", "strides"]),
-        };
+        let allowed = if self.convergence { ALLOWED_STEPS } else { 0 };
         let found = pairs::simulate(&tasks, &self.fingers.designs());
         let failed = found.iter().filter(|pair| !pair.agrees(allowed)).count();
-        match self.json {
-            true => print_json(&pairs::json(&found, Some(allowed), setting, keys).into())?,
-            false => print(&pairs::text(&found, Some(allowed)))?,
-        }
+        print(&pairs::text(&found, Some(allowed)))?;
         verdict("windows", failed, found.len())
     }
 }
 
-/// Returns the settings of a task with the engine itself and with its finer variants.
-fn finer(task: Task, robot: &Robot, engine: Box<dyn Engine>) -> Result<TaskSettings, Failure> {
-    let finer = engine.finer();
-    let settings = std::iter::once(("production", engine)).chain(finer).map(|(name, engine)| {
+/// Returns the settings of a task with the engine's time step and with half of it.
+fn steps(task: Task, robot: &Robot, engine: Box<dyn Engine>) -> Result<TaskSettings, Failure> {
+    let half = engine.with_half_step();
+    let setting = |name: &str, engine| {
         let rig = EngineRig::new(task.clone(), robot, engine).map_err(Failure::input)?;
-        Ok(Setting { name: name.to_owned(), rig: Arc::new(rig), search: Search::Strides })
-    });
-    let settings = settings.collect::<Result<_, Failure>>()?;
+        Ok::<_, Failure>(Setting { name: name.into(), rig: Arc::new(rig), search: Search::Strides })
+    };
+    let settings = [setting("production", engine)?, setting("half the step", half)?];
     Ok(TaskSettings { task, settings })
 }
 
@@ -98,8 +89,7 @@ fn searches(task: Task, robot: &Robot, engine: Box<dyn Engine>) -> Result<TaskSe
     let rig = Arc::new(EngineRig::new(task.clone(), robot, engine).map_err(Failure::input)?);
     let setting =
         |search| Setting { name: search_name(search).to_owned(), rig: rig.clone(), search };
-    let settings = [Search::Walk, Search::Strides].map(setting).to_vec();
-    Ok(TaskSettings { task, settings })
+    Ok(TaskSettings { task, settings: [Search::Walk, Search::Strides].map(setting) })
 }
 
 fn verdict(checks: &str, failed: usize, all: usize) -> Result<(), Failure> {

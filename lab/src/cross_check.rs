@@ -2,7 +2,7 @@
 
 use crate::compare::{Setting, TaskSettings, engines};
 use crate::validate::{Fingers, tasks};
-use crate::{Failure, print, print_json};
+use crate::{Failure, print};
 use clap::Args;
 use finger_opt::setup::files;
 use finger_opt::setup::request::DEFAULT_ROBOT;
@@ -30,9 +30,6 @@ pub struct Arguments {
     /// A few trials far from the windows' ends, and no windows of the second engine
     #[arg(long)]
     reduced: bool,
-    /// Print the result as JSON
-    #[arg(long)]
-    json: bool,
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -44,10 +41,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         let setting = |engine: EngineKind| {
             let rig = engine.rig(&task, &robot, &FingerSource::Paper.example(&task), 1.0);
             let rig = rig.map_err(Failure::input)?.into();
-            Ok(Setting { name: engine.name(), rig, search: Search::Strides })
+            Ok::<_, Failure>(Setting { name: engine.name(), rig, search: Search::Strides })
         };
-        let settings = kinds.into_iter().map(setting).collect::<Result<_, Failure>>()?;
-        Ok(TaskSettings { task, settings })
+        let [first, second] = kinds.map(setting);
+        Ok(TaskSettings { settings: [first?, second?], task })
     };
     let tasks = tasks(&arguments.task)?.into_iter().map(settings);
     let tasks = tasks.collect::<Result<Vec<_>, Failure>>()?;
@@ -55,10 +52,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut designs = Fingers::Three.designs();
     designs.remove(1);
     let check = engines::run(&tasks, &designs, arguments.reduced);
-    match arguments.json {
-        true => print_json(&engines::json(&check, names))?,
-        false => print(&engines::text(&check, names))?,
-    }
+    print(&engines::text(&check, names))?;
     match check.passed() {
         true => Ok(()),
         false => Err(Failure::running(format!("{} do not agree well enough", names.join(" and ")))),

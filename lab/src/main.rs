@@ -14,11 +14,6 @@ use finger_opt::failure::Failure;
 use finger_opt::terminal::{print, say};
 use std::process::ExitCode;
 
-/// Prints a value as JSON, one line.
-fn print_json(value: &serde_json::Value) -> Result<(), Failure> {
-    print(&format!("{value}\n"))
-}
-
 /// Checks the models behind `optimize`: against closed formulas, other engines and published tables.
 ///
 /// Exit codes: 0 done, 1 failed while running or a check failed, 2 bad usage or bad input file.

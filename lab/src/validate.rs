@@ -1,7 +1,7 @@
 //! `lab validate`: compares our tolerance windows with the published ones.
 
 use crate::compare::published as beside;
-use crate::{Failure, print, print_json};
+use crate::{Failure, print};
 use calibration::published::{self, SIMULATION};
 use clap::{Args, ValueEnum};
 use finger_opt::setup::files;
@@ -10,9 +10,8 @@ use finger_opt::setup::task::{TaskFile, read_task};
 use input::shipped::TASKS;
 use insertion::evaluation::tolerance::Search;
 use insertion::stiffness::Measurement;
-use insertion::task::{StartRule, Task};
+use insertion::task::Task;
 use insertion::trial::engine::EngineKind;
-use serde_json::json;
 use std::path::PathBuf;
 use study::write_file;
 
@@ -57,22 +56,13 @@ pub struct Arguments {
     strides: bool,
     #[command(flatten)]
     finger_model: FingerModelRequest,
-    /// How the nominal start is chosen, in place of the task file's rule
-    #[arg(long, value_enum)]
-    start: Option<StartRule>,
     /// Folder of the tables
     #[arg(long, value_name = "DIR", default_value = "results/validation")]
     out: PathBuf,
-    /// Print the result as JSON
-    #[arg(long)]
-    json: bool,
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let mut tasks = tasks(&arguments.task)?;
-    for task in &mut tasks {
-        task.strategy.rule = arguments.start.unwrap_or(task.strategy.rule);
-    }
+    let tasks = tasks(&arguments.task)?;
     let robot = files::robot(&arguments.robot)?;
     let search = if arguments.strides { Search::Strides } else { Search::Walk };
     let fingers = arguments.finger_model.fingers()?;
@@ -82,21 +72,13 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let accuracy = beside::accuracy(&tables);
     write_file(&arguments.out.join("validation.csv"), &beside::csv(&tables))?;
     write_file(&arguments.out.join("accuracy.md"), &accuracy)?;
-    let engine = arguments.engine.name();
-    if arguments.json {
-        return print_json(&json!({
-            "robot": robot.name,
-            "engine": engine,
-            "search": search_name(search),
-            "tasks": beside::json(&tables),
-        }));
-    }
     print(&format!(
-        "robot {}, engine {engine}, {}\n\
+        "robot {}, engine {}, {}\n\
          mean error of the range, mm; rank correlation (Spearman); failures matched, %\n\
          starts: nominal ones that insert; bench: the published experiments\n\n{}\n\
          tables are in {}\n",
         robot.name,
+        arguments.engine.name(),
         search_name(search),
         // The second line already names the units.
         accuracy.replace(" mm", "").replace(" %", "").replace(" of ", "/"),

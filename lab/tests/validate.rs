@@ -24,25 +24,21 @@ fn all_tasks_are_compared_and_written() {
 }
 
 #[test]
-fn one_task_prints_json_that_threads_do_not_change() {
+fn one_task_has_a_table_that_threads_do_not_change() {
     let folder = tempfile::tempdir().unwrap();
-    let ran = |name: &str, threads: &str| {
+    let table = |name: &str, threads: &str| {
         let out = folder.path().join(name);
         let mut command =
-            common::command(&["validate", "--engine", "fake", "--task", "usb", "--json", "--out"]);
-        common::run(command.arg(out).env("RAYON_NUM_THREADS", threads))
+            common::command(&["validate", "--engine", "fake", "--task", "usb", "--out"]);
+        let ran = common::run(command.arg(&out).env("RAYON_NUM_THREADS", threads));
+        ran.says(&["engine fake, walk", "usb"]);
+        read(&out.join("validation.csv"))
     };
-    let result = ran("one", "1");
-    let found = result.json();
-    assert_eq!((&found["engine"], &found["search"]), (&"fake".into(), &"walk".into()));
-    let task = &found["tasks"][0];
-    assert_eq!(task["designs"].as_array().map(Vec::len), Some(11));
+    let found = table("one", "1");
+    assert_eq!(found.lines().count(), 1 + 11);
     // The measured stiffness, not the surrogate's.
-    assert_eq!(task["designs"][4]["stiffness_compliance_n_per_mm"], 2.6);
-    assert_eq!(task["designs"][4]["infill_direction_deg"], 20.0);
-    assert_eq!(task["agreement"][2]["compared"], "simulation");
-    assert_eq!(task["agreement"][2]["matched_ends"], 6);
-    assert_eq!(ran("eight", "8").stdout, result.stdout);
+    assert!(found.contains("\nusb,5,20,20,45,2.6,inserted,"), "{found}");
+    assert_eq!(table("eight", "8"), found);
 }
 
 #[test]

@@ -208,28 +208,20 @@ pub struct AskTellStudy {
 type Next<'py> = (Vec<(u64, Bound<'py, PyBytes>)>, Option<String>);
 
 impl AskTellStudy {
-    fn study(&self) -> MutexGuard<'_, Option<ask_tell::AskTellStudy>> {
+    fn lock(&self) -> MutexGuard<'_, Option<ask_tell::AskTellStudy>> {
         self.open.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Calls `action` with the study, without the interpreter's lock.
-    fn with<T: Send>(
-        &self,
-        py: Python<'_>,
-        action: impl FnOnce(&mut ask_tell::AskTellStudy) -> T + Send,
-    ) -> PyResult<T> {
-        let done = released(py, || self.study().as_mut().map(action))?;
-        done.ok_or_else(|| StudyError::new_err("the study is closed"))
+    /// Calls `action` with the study.
+    fn with<T>(&self, action: impl FnOnce(&mut ask_tell::AskTellStudy) -> T) -> PyResult<T> {
+        self.lock().as_mut().map(action).ok_or_else(|| StudyError::new_err("the study is closed"))
     }
 }
 
 #[pymethods]
 impl AskTellStudy {
     fn next<'py>(&self, py: Python<'py>) -> PyResult<Next<'py>> {
-        let step = interruptible(py, |stop: &AtomicBool| {
-            self.study().as_mut().map(|study| study.next_step(stop))
-        })?;
-        let step = step.ok_or_else(|| StudyError::new_err("the study is closed"))?;
+        let step = interruptible(py, |stop| self.with(|study| study.next_step(stop)))??;
         Ok(match step.map_err(exception)? {
             NextStep::Wait => (Vec::new(), None),
             NextStep::Evaluate(work) => {
@@ -245,32 +237,30 @@ impl AskTellStudy {
 
     fn take(&self, py: Python<'_>, proposal: u64, result: &[u8]) -> PyResult<bool> {
         let result = result.to_vec();
-        self.with(py, |study| study.take(proposal, &result))?.map_err(|why| match why {
+        let taken = released(py, || self.with(|study| study.take(proposal, &result)))??;
+        taken.map_err(|why| match why {
             RejectedResult::Refused(error) => Refused::new_err(error.to_string()),
             RejectedResult::Failed(failure) => exception(failure),
         })
     }
 
     fn progress(&self, py: Python<'_>) -> PyResult<(usize, u64, String)> {
-        self.with(py, |study| study.progress())
+        released(py, || self.with(|study| study.progress()))?
     }
 
     fn hint(&self, py: Python<'_>) -> PyResult<String> {
-        self.with(py, |study| study.hint())
+        released(py, || self.with(|study| study.hint()))?
     }
 
     fn threads(&self, py: Python<'_>) -> PyResult<usize> {
-        self.with(py, |study| study.threads())
+        released(py, || self.with(|study| study.threads()))?
     }
 
     /// Returns the output of the command, and the reason for which the study has no result, if there is one.
     fn finish(&self, py: Python<'_>, ending: &str) -> PyResult<(String, Option<String>)> {
         let ending = serde_json::from_value(json!(ending));
         let ending = ending.map_err(|error| InputError::new_err(format!("ending: {error}")))?;
-        let finish =
-            |stop: &AtomicBool| self.study().as_mut().map(|study| study.finish(ending, stop));
-        let done = interruptible(py, finish)?;
-        let ended = done.ok_or_else(|| StudyError::new_err("the study is closed"))?;
+        let ended = interruptible(py, |stop| self.with(|study| study.finish(ending, stop)))??;
         let ended = ended.map_err(exception)?;
         let unusable = ended.unusable.as_ref().map(ToString::to_string);
         let answer = Answer::of(&ended.record);
@@ -285,6 +275,6 @@ impl AskTellStudy {
 
     /// Closes the study, so that other processes can open it.
     fn close(&self, py: Python<'_>) {
-        py.allow_threads(|| *self.study() = None);
+        py.allow_threads(|| *self.lock() = None);
     }
 }

@@ -53,7 +53,7 @@ impl Subject {
         let record = answer.record;
         let one = !record.config.several_tasks() && record.config.objective.single().is_some();
         let design = answer.verdict.finger().filter(|_| one)?.clone();
-        Some(Stored { provenance: record.segments.last()?.provenance.clone(), design, found: () })
+        Some(Stored { provenance: record.provenance().clone(), design, found: () })
     }
 
     /// Reads an analysis; `None` if it is missing or valid for another provenance or design.

@@ -126,15 +126,6 @@ pub fn advice(answer: &Answer, dir: &Path) -> Value {
     // The simulated ties and window do not apply to a finger that is predicted for the bench.
     let simulated = answer.verdict.finger().is_some() && answer.record.on_bench.is_none();
     let one = answer.recommended.as_ref().filter(|_| simulated);
-    let start = one.and_then(|found| found.start).map(|start| {
-        json!({
-            "negative_mm": start.window_mm[0],
-            "positive_mm": start.window_mm[1],
-            "one_sided": start.one_sided(),
-            "to_middle_mm": start.to_middle_mm,
-            "advice": start.advice(),
-        })
-    });
     let as_good = one.and_then(|found| found.ties.as_ref());
     let (command, why) = command::next(answer, dir);
     json!({
@@ -144,7 +135,7 @@ pub fn advice(answer: &Answer, dir: &Path) -> Value {
         "finger": answer.verdict.finger(),
         "force": force(answer),
         "trust": trust(&answer.trust),
-        "start": start,
+        "start": one.and_then(|found| found.start.as_ref()),
         "as_good": as_good.map(|as_good| equivalent(answer, as_good)),
         "next": {"command": command, "why": why.to_string()},
     })

@@ -43,7 +43,7 @@ pub fn summary(ended: &Ended, answer: &Answer, analyses: &PostAnalysis) -> Value
         "task": config.task_name(),
         "space": config.space.name,
         "robot": config.robot,
-        "engine": record.segments.last().map(|segment| &segment.provenance.engine.name),
+        "engine": record.provenance().engine.name,
         "optimizer": config.optimizer,
         "objective": config.objective,
         "seed": config.seed,

@@ -49,13 +49,6 @@ fn verbose(answer: &Answer, ending: Ending, cached: u64) -> String {
     };
     let (task, method) = (config.task_name(), config.method());
     let mut text = format!("\n{task} with {method}: {done} evaluations{end}\n");
-    let first = record.first_current();
-    if first > 0 {
-        text += &format!(
-            "segment       {}, from evaluation {first}: the settings changed, and only these count\n",
-            record.segments.len(),
-        );
-    }
     if let Some(bench) = &record.on_bench {
         text += &layout::lines([lines::accuracy(bench)]);
         text += "by simulation alone:\n";

@@ -27,13 +27,8 @@ pub trait Engine: Send + Sync {
     /// Creates the simulation, at time zero, of a scene that the engine [supports](Engine::supports).
     fn world(&self, scene: &Scene) -> Box<dyn World>;
 
-    /// Returns the same engine with half the step, to repeat simulations that diverged.
+    /// Returns the same engine with half the step, to repeat simulations that diverged, and for convergence checks.
     fn with_half_step(&self) -> Box<dyn Engine>;
-
-    /// Returns engines with finer settings for convergence checks, each with its name.
-    fn finer(&self) -> Vec<(&'static str, Box<dyn Engine>)> {
-        vec![("half the step", self.with_half_step())]
-    }
 }
 
 /// Reason why an engine cannot simulate a scene.

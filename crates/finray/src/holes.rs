@@ -3,8 +3,8 @@
 
 use super::polygon::Ring;
 use crate::outline::Outline;
-use crate::printed::{PrintedFinger, length};
-use input::units::{MM, mm};
+use crate::printed::PrintedFinger;
+use input::units::{self, MM, mm};
 use input::{Check, InputError};
 use nalgebra::Point2;
 use serde::Deserialize;
@@ -37,7 +37,8 @@ impl Direction {
 }
 
 /// Row of equal holes, m.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Holes {
     /// Direction of the holes' centre lines.
     pub axis: Direction,
@@ -46,23 +47,30 @@ pub struct Holes {
     /// Number of holes.
     pub count: u32,
     /// Distance from centre to centre.
+    #[serde(rename = "spacing_mm", deserialize_with = "units::read::mm")]
     pub spacing: f64,
     /// Diameter of a hole.
+    #[serde(rename = "diameter_mm", deserialize_with = "units::read::mm")]
     pub diameter: f64,
     /// Offset of the middle of the row from the middle of the base or block, along the row and across it.
+    #[serde(rename = "offset_mm", deserialize_with = "units::read::mm")]
     pub offset: [f64; 2],
     /// Block that contains the holes; if `None`, they are in the clamped base.
     pub block: Option<Block>,
 }
 
 /// Block beyond the end of a finger, of the same depth and in the middle of its width, m.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Block {
     /// Length beyond the end.
+    #[serde(rename = "length_mm", deserialize_with = "units::read::mm")]
     pub length: f64,
     /// Width.
+    #[serde(rename = "width_mm", deserialize_with = "units::read::mm")]
     pub width: f64,
     /// Additional length inside the finger, so that a slicer merges both.
+    #[serde(rename = "overlap_mm", deserialize_with = "units::read::mm")]
     pub overlap: f64,
 }
 
@@ -70,10 +78,6 @@ pub struct Block {
 const FLAT: f64 = 0.01 * MM;
 /// Thickness of the thinnest wall beside a hole, in widths of a printed line.
 const WALL_LINES: f64 = 3.0;
-/// Smallest diameter that prints open, m.
-const MIN_DIAMETER: f64 = 1.0 * MM;
-/// Largest number of holes of a row.
-const MAX_COUNT: u32 = 20;
 /// Tolerance of lengths for rounding errors, m.
 const EPSILON: f64 = 1e-9;
 
@@ -185,55 +189,5 @@ impl Holes {
             return check.fail("holes.offset_mm", problem);
         }
         Ok(())
-    }
-}
-
-/// Table `holes` of a finger file.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct RawHoles {
-    axis: Direction,
-    row: Direction,
-    count: u32,
-    spacing_mm: f64,
-    diameter_mm: f64,
-    offset_mm: [f64; 2],
-    block: Option<RawBlock>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RawBlock {
-    length_mm: f64,
-    width_mm: f64,
-    overlap_mm: f64,
-}
-
-impl RawHoles {
-    /// Checks each value by itself; [`Holes::check`] checks whether they fit together.
-    pub fn checked(self, check: Check<'_>) -> Result<Holes, InputError> {
-        let length = |key, value| length(check, key, value);
-        let RawHoles { axis, row, count, .. } = self;
-        let (fits, must) = ((1..=MAX_COUNT).contains(&count), format!("be from 1 to {MAX_COUNT}"));
-        check.require("holes.count", f64::from(count), fits, &must)?;
-        let diameter = length("holes.diameter_mm", self.diameter_mm)?;
-        let must = format!("be at least {}: smaller holes close in print", MIN_DIAMETER / MM);
-        check.require("holes.diameter_mm", self.diameter_mm, diameter >= MIN_DIAMETER, &must)?;
-        let block = |RawBlock { length_mm, width_mm, overlap_mm }| {
-            Ok(Block {
-                length: length("holes.block.length_mm", length_mm)?,
-                width: length("holes.block.width_mm", width_mm)?,
-                overlap: length("holes.block.overlap_mm", overlap_mm)?,
-            })
-        };
-        Ok(Holes {
-            axis,
-            row,
-            count,
-            spacing: length("holes.spacing_mm", self.spacing_mm)?,
-            diameter,
-            offset: check.each("holes.offset_mm", self.offset_mm, Check::finite)?.map(|v| v * MM),
-            block: self.block.map(block).transpose()?,
-        })
     }
 }

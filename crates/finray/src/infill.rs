@@ -35,7 +35,7 @@ impl RibLines {
         let (sin, cos) = libm::sincos(design.direction_deg * DEG);
         let across = Vector2::new(cos, -sin);
         let phase = design.phase_mm.map_or(finger.ribs.phase, |mm| mm * MM);
-        let first = across.dot(&finger.ribs.origin.coords) + phase;
+        let first = across.dot(&Vector2::from(finger.ribs.origin)) + phase;
         let pitch = finger.ribs.line_spacing / (design.density_percent * PERCENT);
         RibLines { across, first, pitch }
     }

@@ -16,8 +16,6 @@ use toml::de::DeTable;
 /// Largest magnitude of a number in a file. A larger one is probably in a wrong unit, and could overflow in sums and
 /// products.
 const LARGEST: f64 = 1e9;
-/// Smallest value of a number that must be above 0.
-const SMALLEST: f64 = 1e-9;
 /// Largest magnitude of a coordinate or a displacement, mm.
 const LONGEST_MM: f64 = 1000.0;
 
@@ -234,15 +232,6 @@ impl Check<'_> {
         // A NaN fails the comparison.
         let fits = value.abs() <= LARGEST;
         self.require(key, value, fits, "be a finite number of magnitude 1e9 or less")
-    }
-
-    /// Checks that a value lies in 1e-9 .. 1e9.
-    ///
-    /// # Errors
-    /// If it does not.
-    pub fn positive(&self, key: &str, value: f64) -> Result<f64, InputError> {
-        let fits = (SMALLEST..=LARGEST).contains(&value);
-        self.require(key, value, fits, "be a finite number above 0, 1e-9 to 1e9")
     }
 
     /// Checks that a value lies in 0 .. 1e9.

@@ -85,6 +85,10 @@ const fn distance(pattern: &'static str) -> NumberSpec {
 const fn length(pattern: &'static str) -> NumberSpec {
     file(pattern, SMALLEST, 1e3)
 }
+/// A length of a printed finger, mm. Above the upper bound its unit is wrong.
+const fn printed(pattern: &'static str) -> NumberSpec {
+    file(pattern, SMALLEST, 500.0)
+}
 /// A size of a part, mm. The lower bound, 1 um, is far below the smallest printable size.
 const fn size(pattern: &'static str) -> NumberSpec {
     file(pattern, 1e-3, 1e3)
@@ -145,21 +149,24 @@ pub static NUMBERS: &[NumberSpec] = &[
     number(Kind::Added, CLEARANCE, -1e3, 1e3),
     number(Kind::Added, EDGE_RADIUS, 0.0, 1e3),
     number(Kind::Added, CHAMFER, 0.0, 1e3),
-    length("finger.outline.length_mm|width_mm|depth_mm|tip_mm|back_radius_mm"),
-    length("finger.notch.pad_mm|roof_mm"),
+    printed("finger.outline.length_mm|width_mm|depth_mm|tip_mm|back_radius_mm"),
+    printed("finger.notch.pad_mm|roof_mm"),
     file("finger.notch.pad_deg", 0.0, 60.0),
-    length("finger.skin|ribs.thickness_mm"),
-    length("finger.ribs.line_spacing_mm"),
+    printed("finger.skin|ribs.thickness_mm"),
+    printed("finger.ribs.line_spacing_mm"),
     distance("finger.ribs|holes.origin_mm|offset_mm.*"),
     distance("finger.ribs.phase_mm"),
-    length("finger.base.solid_mm|clamped_mm"),
+    printed("finger.base.solid_mm|clamped_mm"),
     file("finger.mount.tilt_deg", 0.0, 60.0),
     file("finger.material.modulus_gpa", 1e-4, 500.0),
     file("finger.material.poisson", 0.0, 0.5),
     file("finger.material.density_kg_per_m3", SMALLEST, 1e9),
-    length("finger.holes.spacing_mm|diameter_mm"),
-    length("finger.holes.block.length_mm|width_mm|overlap_mm"),
-    length("finger.print.line_width_mm|smallest_gap_mm"),
+    printed("finger.holes.spacing_mm"),
+    // Smaller holes close in print.
+    file("finger.holes.diameter_mm", 1.0, 500.0),
+    fixed("finger.holes.count", 1.0, 20.0),
+    printed("finger.holes.block.length_mm|width_mm|overlap_mm"),
+    printed("finger.print.line_width_mm|smallest_gap_mm"),
     // The upper bound is a thousand times the stiffness of a solid finger.
     fixed("stiffness_assembly_n_per_mm|stiffness_compliance_n_per_mm", 1e-6, 1e6),
     number(Kind::Springs, STIFFNESS, SMALLEST, 1e6),
@@ -223,24 +230,30 @@ pub fn paths(kind: Kind) -> Vec<String> {
 /// Returns the error message for a number that is out of the bounds of its path; `None` if it is within them or the
 /// path is not in the table.
 pub fn problem(path: &str, value: f64) -> Option<String> {
-    let row = NUMBERS.iter().find(|number| matches(number.pattern, path))?;
-    out_of_bounds(value, row.bounds)
+    let (_, number) = filled_paths(path).find(|(known, _)| known == path)?;
+    out_of_bounds(value, number.bounds)
 }
 
-/// Returns whether a path matches a pattern; a name in place of `*` may contain dots.
-fn matches(pattern: &str, path: &str) -> bool {
-    let split = pattern.split_once('.');
-    let (word, rest) = (split.map_or(pattern, |(word, _)| word), split.map(|(_, rest)| rest));
-    let goes_on = |after: &str| match (rest, after.strip_prefix('.')) {
-        (Some(rest), Some(path)) => matches(rest, path),
-        (rest, _) => rest.is_none() && after.is_empty(),
+/// Returns every path of the table with its entry; each `*` is replaced by the word of `path` at its position.
+pub(crate) fn filled_paths(path: &str) -> impl Iterator<Item = (String, &'static NumberSpec)> {
+    let words: Vec<&str> = path.split('.').collect();
+    let all =
+        NUMBERS.iter().flat_map(|number| number.paths().into_iter().map(move |p| (p, number)));
+    all.map(move |(pattern, number)| (filled(&pattern, &words), number))
+}
+
+/// Returns a pattern with each `*` replaced by the word at its position. If there are more
+/// words than in the pattern, the first `*` takes several, since names may contain dots.
+fn filled(pattern: &str, words: &[&str]) -> String {
+    let own: Vec<&str> = pattern.split('.').collect();
+    let (mut at, mut more) = (0, words.len().saturating_sub(own.len()));
+    let fill = |word: &&str| {
+        let end = if *word == "*" { at + 1 + std::mem::take(&mut more) } else { at + 1 };
+        let taken = words.get(at..end).filter(|_| *word == "*");
+        at = end;
+        taken.map_or(word.to_string(), |words| words.join("."))
     };
-    if word == "*" {
-        let mut ends = path.match_indices('.').map(|(end, _)| end).chain([path.len()]);
-        ends.any(|end| goes_on(&path[end..]))
-    } else {
-        word.split('|').any(|one| path.strip_prefix(one).is_some_and(goes_on))
-    }
+    own.iter().map(fill).collect::<Vec<_>>().join(".")
 }
 
 /// Checks a number against the bounds of its path.
@@ -279,22 +292,23 @@ fn check_value(
     rows: &[PartialMatch],
 ) -> Result<(), InputError> {
     match value {
-        Value::Table(table) => {
-            let name = table.get("name").and_then(Value::as_str).filter(|_| !key.is_empty());
-            table.iter().try_for_each(|(word, value)| {
-                let key = match name {
-                    Some(name) => format!("{key} \"{name}\" {word}"),
-                    None if key.is_empty() => word.clone(),
-                    None => format!("{key}.{word}"),
-                };
-                check_value(check, &key, value, &advance(rows, |one| one == word))
-            })
-        }
+        Value::Table(table) => table.iter().try_for_each(|(word, value)| {
+            let key = match key {
+                "" => word.clone(),
+                item if item.ends_with('"') => format!("{item} {word}"),
+                table => format!("{table}.{word}"),
+            };
+            check_value(check, &key, value, &advance(rows, |one| one == word))
+        }),
         Value::Array(items) => {
             let mut below = advance(rows, |one| one == "*");
             // A pattern that ends at a list applies to all its numbers, which vary together.
             below.extend(rows.iter().filter(|(_, rest)| rest.is_empty()));
-            items.iter().try_for_each(|item| check_value(check, key, item, &below))
+            items.iter().try_for_each(|item| {
+                let name = item.get("name").and_then(Value::as_str);
+                let key = name.map_or(key.to_owned(), |name| format!("{key} \"{name}\""));
+                check_value(check, &key, item, &below)
+            })
         }
         Value::Integer(whole) => check_value(check, key, &Value::Float(*whole as f64), rows),
         Value::Float(number) => {

@@ -1,6 +1,6 @@
 //! Paths of numbers, checked against the table of all numbers.
 
-use crate::numbers::{Kind, NUMBERS, NumberSpec};
+use crate::numbers::{Kind, NumberSpec, filled_paths};
 use input::numbers::unknown_path;
 use input::units::without_unit;
 use serde::{Deserialize, Serialize};
@@ -26,10 +26,8 @@ impl Path {
         // The names in a path of which only `task` is missing are those of its suggestion.
         let in_task = ["plug.", "socket.", "strategy."].iter().any(|table| text.starts_with(table));
         let whole = if in_task { format!("task.{text}") } else { text.clone() };
-        let words: Vec<&str> = whole.split('.').collect();
-        let variable = NUMBERS.iter().filter(|number| number.kind != Kind::Fixed);
-        let all = variable.flat_map(|number| number.paths().into_iter().map(move |p| (p, number)));
-        let known: Vec<_> = all.map(|(path, number)| (filled(&path, &words), number)).collect();
+        let variable = |(_, number): &(String, &NumberSpec)| number.kind != Kind::Fixed;
+        let known: Vec<_> = filled_paths(&whole).filter(variable).collect();
         match known.iter().find(|(path, _)| *path == text) {
             Some((_, number)) => Ok(Path { text, number }),
             None => {
@@ -54,20 +52,6 @@ impl Path {
     pub fn unit(&self) -> &'static str {
         label(self).1
     }
-}
-
-/// Returns the pattern `path` with each `*` replaced by the word at its position. If there are more
-/// words than in the pattern, the first `*` takes several, since names may contain dots.
-fn filled(path: &str, words: &[&str]) -> String {
-    let own: Vec<&str> = path.split('.').collect();
-    let (mut at, mut more) = (0, words.len().saturating_sub(own.len()));
-    let fill = |word: &&str| {
-        let end = if *word == "*" { at + 1 + std::mem::take(&mut more) } else { at + 1 };
-        let taken = words.get(at..end).filter(|_| *word == "*");
-        at = end;
-        taken.map_or(word.to_string(), |words| words.join("."))
-    };
-    own.iter().map(fill).collect::<Vec<_>>().join(".")
 }
 
 impl TryFrom<String> for Path {
@@ -125,7 +109,7 @@ pub fn label(path: &str) -> (String, &'static str) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::numbers::{DENSITY, FRICTION};
+    use crate::numbers::{DENSITY, FRICTION, NUMBERS};
     use input::Document;
     use input::numbers::NumberFile;
     use input::shipped::{FINGERS, ROBOTS, Shipped, TASKS};

@@ -131,7 +131,7 @@ pub fn corners<'a>(parameters: impl IntoIterator<Item = &'a Variable>, most: usi
 
 /// Validated search space.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "RawSpace")]
+#[serde(deny_unknown_fields)]
 pub struct Space {
     /// Name, as recorded in study folders.
     pub name: String,
@@ -197,22 +197,6 @@ const MAX_PARAMETERS: usize = 100;
 /// Smallest step: a thousand times the rounding of values.
 const FINEST_STEP: f64 = 1e-6;
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RawSpace {
-    name: String,
-    description: String,
-    parameter: Vec<Variable>,
-}
-
-/// Conversion of a space that is a table of another file, whose reader adds the file name to errors.
-impl TryFrom<RawSpace> for Space {
-    type Error = InputError;
-    fn try_from(raw: RawSpace) -> Result<Self, InputError> {
-        Space::check(raw, "[space]")
-    }
-}
-
 impl Space {
     /// Returns whether its designs set numbers of the task.
     pub fn changes_task(&self) -> bool {
@@ -230,25 +214,31 @@ impl Space {
     /// # Errors
     /// If the text cannot be parsed, or a value is invalid.
     pub fn parse(text: &str, file: &str) -> Result<Self, InputError> {
-        Self::check(read(text, file)?, file)
+        let space: Space = read(text, file)?;
+        space.check(file)?;
+        Ok(space)
     }
 
-    fn check(raw: RawSpace, file: &str) -> Result<Self, InputError> {
+    /// Checks a space that was read as a table of a file; `file` is named in errors.
+    ///
+    /// # Errors
+    /// If a value is invalid.
+    pub fn check(&self, file: &str) -> Result<(), InputError> {
         let fail = |key: &str, problem: &str| Check { file }.fail(key, problem);
-        if !(1..=MAX_PARAMETERS).contains(&raw.parameter.len()) {
+        if !(1..=MAX_PARAMETERS).contains(&self.parameters.len()) {
             let problem = format!("a space needs 1 to {MAX_PARAMETERS} tables [[parameter]]");
             return fail("parameter", &problem);
         }
-        for (i, parameter) in raw.parameter.iter().enumerate() {
+        for (i, parameter) in self.parameters.iter().enumerate() {
             let key = &parameter.key;
-            if raw.parameter[..i].iter().any(|other| other.key == *key) {
+            if self.parameters[..i].iter().any(|other| other.key == *key) {
                 return fail(key, "is given twice; give each key once");
             }
             if let Some(problem) = parameter.problem() {
                 return fail(key, &problem);
             }
         }
-        Ok(Space { name: raw.name, description: raw.description, parameters: raw.parameter })
+        Ok(())
     }
 
     /// Returns the number of levels per axis, which define the optimizer's grid.
@@ -345,8 +335,9 @@ source = "paper"
             let (scale, source) = (if log { Scale::Log } else { Scale::Linear }, String::new());
             let key = Path::new("task.strategy.start_mm.x").unwrap();
             let parameter = Variable { key, low, high, step, scale, source };
-            let raw = RawSpace { name: String::new(), description: String::new(), parameter: vec![parameter] };
-            if let Ok(space) = Space::check(raw, "s.toml") {
+            let (name, description) = (String::new(), String::new());
+            let space = Space { name, description, parameters: vec![parameter] };
+            if space.check("s.toml").is_ok() {
                 let parameter = &space.parameters[0];
                 prop_assert!((1..=1_000_001).contains(&parameter.levels()));
                 let level = (share * f64::from(parameter.levels() - 1)) as u32;

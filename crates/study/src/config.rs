@@ -139,19 +139,17 @@ impl StudyConfig {
     /// # Errors
     /// The invalid field and its accepted values.
     pub fn check(&self) -> Result<(), String> {
-        for (key, value, [least, most]) in [
-            ("budget", self.budget, [1, LARGEST_BUDGET]),
-            ("polish", self.polish, [0, LARGEST_BUDGET]),
-            ("batch", self.batch, [1, LARGEST_BATCH]),
+        self.space.check("[space]").map_err(|error| error.to_string())?;
+        for (key, value, accepted) in [
+            ("budget", self.budget as f64, 1.0..=LARGEST_BUDGET as f64),
+            ("polish", self.polish as f64, 0.0..=LARGEST_BUDGET as f64),
+            ("batch", self.batch as f64, 1.0..=LARGEST_BATCH as f64),
+            ("indifference_mm", self.indifference_mm, INDIFFERENCES_MM),
         ] {
-            if !(least..=most).contains(&value) {
+            if !accepted.contains(&value) {
+                let [least, most] = [accepted.start(), accepted.end()];
                 return Err(format!("{key}: is {value}; it must lie in {least} .. {most}"));
             }
-        }
-        if !INDIFFERENCES_MM.contains(&self.indifference_mm) {
-            let [least, most] = [INDIFFERENCES_MM.start(), INDIFFERENCES_MM.end()];
-            let given = self.indifference_mm;
-            return Err(format!("indifference_mm: is {given}; it must lie in {least} .. {most}"));
         }
         let kind: OptimizerKind =
             self.optimizer.parse().map_err(|error| format!("optimizer: {error}"))?;

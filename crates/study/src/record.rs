@@ -3,7 +3,7 @@
 use super::StudyConfig;
 use super::limits::ForceLimits;
 use super::on_bench::BenchPrediction;
-use super::provenance::Segment;
+use super::provenance::{Provenance, Segment};
 use ask_tell::{Grid, pareto};
 use insertion::evaluation::Evaluation;
 use insertion::evaluation::objective::{Goals, Measure, Score};
@@ -171,6 +171,11 @@ impl StudyRecord {
         let most = most_evaluations(config, segments, evaluations).min(config.budget);
         let most = most.min(Grid::new(config.space.levels()).size());
         !self.settled && (evaluations.len() as u64) < most
+    }
+
+    /// Returns the provenance of the last segment.
+    pub fn provenance(&self) -> &Provenance {
+        self.segments.last().map_or(&self.config.provenance, |segment| &segment.provenance)
     }
 
     /// Returns the evaluations of the current simulation: of the last segment, and of those directly before it that

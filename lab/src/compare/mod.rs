@@ -8,7 +8,6 @@ pub mod published;
 #[cfg(test)]
 mod tests;
 
-use input::units::N_PER_MM;
 use insertion::evaluation::tolerance::{self, Search};
 use insertion::evaluation::{Evaluation, Window};
 use insertion::finger::Finger;
@@ -18,11 +17,9 @@ use insertion::task::Task;
 use insertion::task::finger::FingerModel;
 use insertion::trial::Rig;
 use rayon::prelude::*;
-use serde_json::{Value, json};
 use std::sync::Arc;
 
 /// Method by which windows on a task are determined: engine with its step, and search.
-#[derive(Clone)]
 pub struct Setting {
     pub name: String,
     pub rig: Arc<dyn Rig>,
@@ -35,10 +32,10 @@ impl Setting {
     }
 }
 
-/// Task and the settings in which its windows are simulated, the reference first.
+/// Task and the two settings in which its windows are simulated, the reference first.
 pub struct TaskSettings {
     pub task: Task,
-    pub settings: Vec<Setting>,
+    pub settings: [Setting; 2],
 }
 
 /// Measured finger on a task.
@@ -63,27 +60,11 @@ impl Subject {
     }
 }
 
-/// Returns the JSON object of a finger on a task, extended by the fields of `results`.
-fn subject_json(task: &str, design: &Measurement, results: Value) -> Value {
-    let mut fields = json!({
-        "task": task,
-        "design": design.design,
-        "infill_density_percent": design.density_percent,
-        "infill_direction_deg": design.direction_deg,
-        "stiffness_assembly_n_per_mm": design.assembly / N_PER_MM,
-        "stiffness_compliance_n_per_mm": design.compliance / N_PER_MM,
-    });
-    if let (Value::Object(fields), Value::Object(results)) = (&mut fields, results) {
-        fields.extend(results);
-    }
-    fields
-}
-
 /// Calls `simulate` in parallel for every design on every task. Returns the results ordered by task, then by design.
 pub fn each<T: Send>(
     tasks: &[TaskSettings],
     designs: &[Measurement],
-    simulate: impl Fn(&Subject, &[Setting]) -> T + Sync,
+    simulate: impl Fn(&Subject, &[Setting; 2]) -> T + Sync,
 ) -> Vec<T> {
     let pairs: Vec<_> =
         tasks.iter().flat_map(|task| designs.iter().map(move |d| (task, d))).collect();
@@ -99,18 +80,6 @@ fn failures(window: &Window) -> [Option<FailureClass>; 2] {
     [window.end_negative, window.end_positive].map(|end| match (window.nominal, end) {
         (Outcome::Inserted, Some(Outcome::Failed(class))) => Some(class),
         _ => None,
-    })
-}
-
-fn window_json(window: &Window) -> Value {
-    let [negative, positive] = failures(window);
-    json!({
-        "nominal": window.nominal.word(),
-        "negative_mm": window.negative_mm(),
-        "positive_mm": window.positive_mm(),
-        "range_mm": window.range_mm(),
-        "failure_negative": negative,
-        "failure_positive": positive,
     })
 }
 

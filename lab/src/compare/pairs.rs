@@ -1,11 +1,10 @@
 //! Windows of the same fingers in two settings, and the differences of their ends.
 
-use super::{Setting, Subject, TaskSettings, each, subject_json, window_json, window_words};
+use super::{Setting, Subject, TaskSettings, each, window_words};
 use ask_tell::statistics::mean;
 use insertion::evaluation::{Evaluation, OffsetStep, Window, grid_mm};
 use insertion::stiffness::Measurement;
 use report::text_table;
-use serde_json::{Value, json};
 
 /// Windows of a finger in two settings.
 #[derive(Debug, Clone, PartialEq)]
@@ -17,10 +16,10 @@ pub struct WindowPair {
 }
 
 impl WindowPair {
-    pub fn new(subject: &Subject, settings: [&Setting; 2], found: [&Evaluation; 2]) -> Self {
+    pub fn new(subject: &Subject, settings: &[Setting; 2], found: [&Evaluation; 2]) -> Self {
         WindowPair {
             subject: subject.clone(),
-            settings: settings.map(|setting| setting.name.clone()),
+            settings: settings.each_ref().map(|setting| setting.name.clone()),
             windows: found.map(|evaluation| evaluation.window.clone()),
             trials: found.map(|evaluation| evaluation.trials),
         }
@@ -43,23 +42,12 @@ impl WindowPair {
     }
 }
 
-/// Returns the pairs of windows in the first setting and in each of the others, for every design on every task.
+/// Returns the pair of windows for every design on every task.
 pub fn simulate(tasks: &[TaskSettings], designs: &[Measurement]) -> Vec<WindowPair> {
-    let pairs = each(tasks, designs, |subject, settings| {
-        let Some((first, others)) = settings.split_first() else { return Vec::new() };
-        let reference = first.evaluate(&subject.finger);
-        let pair = |other: &Setting| {
-            let found = other.evaluate(&subject.finger);
-            WindowPair::new(subject, [first, other], [&reference, &found])
-        };
-        others.iter().map(pair).collect()
-    });
-    pairs.concat()
-}
-
-/// Returns the mean absolute shift of an end from the first window to the second, mm; `None` without pairs.
-pub fn mean_end_difference_mm(pairs: &[WindowPair]) -> Option<f64> {
-    mean(pairs.iter().flat_map(WindowPair::moved_mm).map(f64::abs))
+    each(tasks, designs, |subject, settings| {
+        let found = settings.each_ref().map(|setting| setting.evaluate(&subject.finger));
+        WindowPair::new(subject, settings, found.each_ref())
+    })
 }
 
 /// Returns a table at most 80 columns wide with a summary; with verdicts, if an `allowed` shift of an end is given, in
@@ -99,30 +87,4 @@ fn summary(pairs: &[WindowPair]) -> String {
         "same ends in {same} of {all}; ranges differ by {average:.2} mm in the mean, {most:.1} mm at most\n\
          trials: {first} against {second}\n"
     )
-}
-
-/// Returns a JSON list. `setting` is the key under which the second setting's name is written, `windows` are the keys
-/// of both windows; `allowed` as for [`text`].
-pub fn json(
-    pairs: &[WindowPair],
-    allowed: Option<OffsetStep>,
-    setting: &str,
-    windows: [&str; 2],
-) -> Vec<Value> {
-    let row = |pair: &WindowPair| {
-        let [below, above] = pair.moved_mm();
-        let [first, second] = pair.windows.each_ref().map(window_json);
-        let results = json!({
-            setting: pair.settings[1],
-            windows[0]: first,
-            windows[1]: second,
-            "trials": pair.trials,
-            "negative_moved_mm": below,
-            "positive_moved_mm": above,
-            "allowed_mm": allowed.map(grid_mm),
-            "passed": allowed.map(|allowed| pair.agrees(allowed)),
-        });
-        subject_json(&pair.subject.task, &pair.subject.design, results)
-    };
-    pairs.iter().map(row).collect()
 }

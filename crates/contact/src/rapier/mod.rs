@@ -70,9 +70,4 @@ impl Engine for Rapier {
     fn with_half_step(&self) -> Box<dyn Engine> {
         Box::new(Rapier { step_s: 0.5 * self.step_s, ..*self })
     }
-
-    fn finer(&self) -> Vec<(&'static str, Box<dyn Engine>)> {
-        let finer = Rapier { substeps: 2 * self.substeps, ..*self };
-        vec![("half the step", self.with_half_step()), ("2 x substeps", Box::new(finer))]
-    }
 }

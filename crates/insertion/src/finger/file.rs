@@ -86,7 +86,7 @@ mod tests {
     fn impossible_values_and_unknown_keys_are_named() {
         for (key, value, words) in [
             ("finger.skin.thickness_mm", 0.0, "fingers/finray9.toml: skin.thickness_mm: is 0"),
-            ("finger.material.modulus_gpa", 2e3, "gigapascals"),
+            ("finger.material.modulus_gpa", 2e3, "material.modulus_gpa: is 2000"),
             ("finger.skin.thick_mm", 1.0, "`finger.skin.` continues with thickness_mm"),
         ] {
             refused(with(key, value), &[words]);

@@ -9,7 +9,7 @@ use input::shipped::{
 use insertion::evaluation::INDIFFERENCE_MM;
 use insertion::trial::engine::EngineKind;
 use std::path::Path;
-use study::{CELL, FINGER, Provenance, StudyRecord, input_path, sha256_hex};
+use study::{CELL, FINGER, StudyRecord, input_path, sha256_hex};
 
 /// Inputs of a study as command arguments: shipped ones by name, others by their copies in `dir`. The role of an input
 /// is its key in the provenance: `task_1`, `robot`.
@@ -19,14 +19,9 @@ struct InputArguments<'a> {
 }
 
 impl InputArguments<'_> {
-    fn provenance(&self) -> &Provenance {
-        let StudyRecord { config, segments, .. } = self.record;
-        segments.last().map_or(&config.provenance, |last| &last.provenance)
-    }
-
     /// Returns the name of the shipped file that is identical to an input.
     fn shipped(&self, role: &str, shipped: &[Shipped]) -> Option<&'static str> {
-        let hash = self.provenance().input_sha256.get(role)?;
+        let hash = self.record.provenance().input_sha256.get(role)?;
         let same = |file: &&Shipped| sha256_hex(file.text.as_bytes()) == *hash;
         shipped.iter().find(same).map(|file| file.name)
     }
@@ -155,7 +150,7 @@ const DEFAULTS: [&str; 2] = ["--space infill", "--robot servo"];
 
 /// Returns the options from the space to the engine.
 fn setup(inputs: &InputArguments) -> Vec<String> {
-    let provenance = inputs.provenance();
+    let provenance = inputs.record.provenance();
     // A cell includes its robot.
     let robot = match provenance.input_sha256.contains_key(CELL) {
         true => format!("--cell {}", inputs.input(CELL, &[])),

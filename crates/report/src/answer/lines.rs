@@ -102,7 +102,8 @@ const MEMBERS: usize = 4;
 /// Returns advice on the start and warnings to read before the finger is printed.
 pub fn caveats(answer: &Answer) -> Vec<Line> {
     let found = simulated_finger(answer);
-    let advice = found.and_then(|found| found.start?.advice()).map(|text| line("start", text));
+    let advice = found.and_then(|found| found.start.as_ref()?.advice.as_deref());
+    let advice = advice.map(|text| line("start", text));
     let bench = answer.record.on_bench.iter().flat_map(|bench| &bench.warnings);
     let warnings = bench.map(|words| line("warning", words));
     let stiffness = found.map(|found| &found.design.stiffness).filter(|of| !of.inside_hull());

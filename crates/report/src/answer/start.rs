@@ -1,41 +1,41 @@
 //! Position of the start in its window.
 
 use super::words::{mm, rounded};
+use serde::Serialize;
 
 /// Share of the range that a well-centred start has at least on either side.
 const LEAST_SHARE: f64 = 0.25;
 
 /// Position of the taught start in the window of a finger.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Start {
-    /// Both ends of the window, mm from the start.
-    pub window_mm: [f64; 2],
+    /// Negative end of the window, mm from the start.
+    pub negative_mm: f64,
+    /// Positive end of the window, mm from the start.
+    pub positive_mm: f64,
+    /// Whether the window is so small on one side that the start should be taught again.
+    pub one_sided: bool,
     /// Distance along y from the start to the middle of the window, mm.
     pub to_middle_mm: f64,
+    /// The start to teach instead; `None` if the start is well centred.
+    pub advice: Option<String>,
 }
 
 impl Start {
     /// Returns the start in this window; `None` if it does not contain the start.
-    pub fn of(window_mm: [f64; 2]) -> Option<Self> {
-        let [low, high] = window_mm;
-        (low <= 0.0 && high >= 0.0 && high > low)
-            // To micrometres, without the error of adding tenths.
-            .then(|| Start { window_mm, to_middle_mm: rounded((low + high) / 2.0, 3) })
-    }
-
-    /// Returns whether the window is so small on one side that the start should be taught again.
-    pub fn one_sided(&self) -> bool {
-        let [low, high] = self.window_mm;
-        high.min(-low) < LEAST_SHARE * (high - low)
-    }
-
-    /// Returns advice on the start to teach instead; `None` if the start is well centred.
-    pub fn advice(&self) -> Option<String> {
-        let [low, high] = self.window_mm;
-        let side = if self.to_middle_mm < 0.0 { "-y" } else { "+y" };
-        let (by, half) = (mm(self.to_middle_mm.abs()), mm((high - low) / 2.0));
-        self.one_sided()
-            .then(|| format!("teach the start {by} further to {side}: then {half} on either side"))
+    pub fn of([negative_mm, positive_mm]: [f64; 2]) -> Option<Self> {
+        let range_mm = positive_mm - negative_mm;
+        if !(negative_mm <= 0.0 && positive_mm >= 0.0 && range_mm > 0.0) {
+            return None;
+        }
+        let one_sided = positive_mm.min(-negative_mm) < LEAST_SHARE * range_mm;
+        // To micrometres, without the error of adding tenths.
+        let to_middle_mm = rounded((negative_mm + positive_mm) / 2.0, 3);
+        let side = if to_middle_mm < 0.0 { "-y" } else { "+y" };
+        let (by, half) = (mm(to_middle_mm.abs()), mm(range_mm / 2.0));
+        let advice = one_sided
+            .then(|| format!("teach the start {by} further to {side}: then {half} on either side"));
+        Some(Start { negative_mm, positive_mm, one_sided, to_middle_mm, advice })
     }
 }
 
@@ -47,10 +47,10 @@ mod tests {
     fn a_start_at_the_edge_of_its_window_is_moved_to_the_middle() {
         let edge = Start::of([-3.2, 0.0]).unwrap();
         let advice = "teach the start 1.6 mm further to -y: then 1.6 mm on either side";
-        assert_eq!(edge.advice().as_deref(), Some(advice));
+        assert_eq!(edge.advice.as_deref(), Some(advice));
         // Exactly a quarter is enough.
-        assert_eq!(Start::of([-3.0, 1.0]).unwrap().advice(), None);
-        assert!(Start::of([-0.9, 3.1]).unwrap().one_sided());
+        assert_eq!(Start::of([-3.0, 1.0]).unwrap().advice, None);
+        assert!(Start::of([-0.9, 3.1]).unwrap().one_sided);
         assert_eq!(Start::of([0.0, 0.0]), None, "no window");
         // In floating point the half of -3.3 + 0.4 is -1.4500000000000002.
         for (low, high, middle) in [(-33_i8, 4_i8, "-1.45"), (-33, 1, "-1.6"), (-1, 2, "0.05")] {

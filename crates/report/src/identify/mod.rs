@@ -117,13 +117,7 @@ pub fn text(result: &IdentificationResult) -> String {
     text += &text_table(4, ["number", "prior", "identified", "from"], numbers);
     let advice = |one: &Unknown| Some(format!("\n{}: {}", one.posterior.name, one.advice?));
     text.extend(found.unknowns.iter().filter_map(advice));
-    let misfit = &found.smoothed.misfit;
-    if let (Some(first), Some(last)) = (misfit.first(), misfit.last()) {
-        text += &format!(
-            "\nmisfit        {first:.2} to {last:.2} standard deviations over the iterations; {:.0} % of the data compared\n",
-            100.0 * found.smoothed.compared
-        );
-    }
+    text += &format!("\nmisfit        {}\n", page::misfit_of_fit(&found.smoothed));
     let (outcomes, worse) = page::outcomes(&found.compared);
     text += &format!("outcomes      {outcomes}\n");
     if worse {

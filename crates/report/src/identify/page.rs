@@ -12,6 +12,7 @@ use calibration::identify::curves::{Curves, STEP_S};
 use calibration::identify::formulas::{Flange, Friction};
 use calibration::identify::misfit::{Misfit, Validation, misfits};
 use calibration::identify::question::{Compared, IdentificationResult, Identified};
+use calibration::identify::smoother::Smoothed;
 use calibration::identify::unknown::{Unknown, ValueOrigin};
 use input::units::MM;
 use insertion::outcome::Outcome;
@@ -112,6 +113,17 @@ pub(super) fn outcomes(compared: &[Compared]) -> (String, bool) {
     (text, after < before)
 }
 
+/// Returns the misfit at the first and the last iteration of the fit, and the share of the data that it compares.
+pub(super) fn misfit_of_fit(Smoothed { misfit, compared, .. }: &Smoothed) -> String {
+    let share = format!("{:.0} % of the data compared", 100.0 * compared);
+    match misfit[..] {
+        [first, .., last] if last.is_finite() => {
+            format!("{first:.2} to {last:.2} standard deviations over the iterations; {share}")
+        }
+        _ => share,
+    }
+}
+
 /// Returns the parameters by the origin of their values, the agreement of the outcomes, and the misfit.
 fn summary(found: &Identified) -> Vec<(String, String)> {
     let named = |from: ValueOrigin| {
@@ -128,15 +140,11 @@ fn summary(found: &Identified) -> Vec<(String, String)> {
         [ValueOrigin::Formula, ValueOrigin::Fit, ValueOrigin::Prior, ValueOrigin::Files].map(named);
     let (outcomes, worse) = outcomes(&found.compared);
     let outcomes = if worse { format!("{outcomes}; {FEWER}") } else { outcomes };
-    let share = format!("{:.0} % of the data compared", 100.0 * found.smoothed.compared);
-    let misfit = match found.smoothed.misfit[..] {
-        [first, .., last] if last.is_finite() => {
-            format!("{first:.2} to {last:.2} standard deviations over the iterations; {share}")
-        }
-        _ => share,
-    };
-    let more =
-        [("outcomes", outcomes), ("misfit in the fit", misfit), ("ranges", RANGES.to_owned())];
+    let more = [
+        ("outcomes", outcomes),
+        ("misfit in the fit", misfit_of_fit(&found.smoothed)),
+        ("ranges", RANGES.to_owned()),
+    ];
     all.into_iter().flatten().chain(more.map(|(name, text)| (name.to_owned(), text))).collect()
 }
 

@@ -8,14 +8,13 @@
 mod tests;
 
 use super::pairs::{self, WindowPair};
-use super::{Setting, Subject, TaskSettings, each, subject_json};
-use ask_tell::statistics::{quantile, sorted};
+use super::{Setting, Subject, TaskSettings, each};
+use ask_tell::statistics::{mean, quantile, sorted};
 use insertion::evaluation::{OffsetStep, Window, grid_mm, tolerance};
 use insertion::outcome::Outcome;
 use insertion::stiffness::Measurement;
 use insertion::trial::{Grasp, Trial};
 use report::text_table;
-use serde_json::{Value, json};
 use std::collections::BTreeSet;
 
 /// Smallest accepted fraction of the trials on which the engines agree.
@@ -59,7 +58,7 @@ impl TrialPair {
 }
 
 /// Result of check T9.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct CrossCheck {
     pub trials: Vec<TrialPair>,
     pub windows: Vec<WindowPair>,
@@ -73,7 +72,7 @@ impl CrossCheck {
 
     /// Returns the mean difference of the windows' ends, mm; `None` without windows.
     pub fn end_difference_mm(&self) -> Option<f64> {
-        pairs::mean_end_difference_mm(&self.windows)
+        mean(self.windows.iter().flat_map(WindowPair::moved_mm).map(f64::abs))
     }
 
     pub fn passed(&self) -> bool {
@@ -82,22 +81,19 @@ impl CrossCheck {
     }
 }
 
-/// Compares the first two settings of every task; if `reduced`, by few trials and without the second window.
+/// Compares both settings of every task; if `reduced`, by few trials and without the second window.
 pub fn run(tasks: &[TaskSettings], designs: &[Measurement], reduced: bool) -> CrossCheck {
-    let results = each(tasks, designs, |subject, settings| match settings {
-        [first, second, ..] => in_both(subject, [first, second], reduced),
-        _ => CrossCheck::default(),
-    });
+    let results = each(tasks, designs, |subject, settings| in_both(subject, settings, reduced));
     let results = results.into_iter().map(|result| (result.trials, result.windows));
     let (trials, windows): (Vec<_>, Vec<_>) = results.unzip();
     CrossCheck { trials: trials.concat(), windows: windows.concat() }
 }
 
 /// Compares both settings by the trials of a finger.
-fn in_both(subject: &Subject, settings: [&Setting; 2], reduced: bool) -> CrossCheck {
+fn in_both(subject: &Subject, settings: &[Setting; 2], reduced: bool) -> CrossCheck {
     let reference = settings[0].evaluate(&subject.finger);
     let window = &reference.window;
-    let grasped = settings.map(|setting| setting.rig.grasp(Grasp::of(&subject.finger)));
+    let grasped = settings.each_ref().map(|setting| setting.rig.grasp(Grasp::of(&subject.finger)));
     let trial = |offset: OffsetStep| {
         let trials = grasped.each_ref().map(|grasped| grasped.trial(tolerance::offset(offset)));
         TrialPair {
@@ -162,28 +158,4 @@ pub fn text(check: &CrossCheck, [first, second]: [&str; 2]) -> String {
     });
     let head = ["task", "finger", "offset mm", "beyond end mm", first, second];
     text + "\n" + &text_table(2, head, rows)
-}
-
-pub fn json(check: &CrossCheck, names: [&str; 2]) -> Value {
-    let trial = |pair: &TrialPair| {
-        let results = json!({
-            "finger": pair.subject.infill(),
-            "offset_mm": grid_mm(pair.offset),
-            "beyond_end_mm": grid_mm(pair.from_end),
-            "outcomes": pair.outcomes.map(Outcome::label),
-            "agrees": pair.agrees(),
-            "tip_distance_mm": pair.tip_mm,
-        });
-        subject_json(&pair.subject.task, &pair.subject.design, results)
-    };
-    json!({
-        "engines": names,
-        "agreement": check.agreement(),
-        "agreement_target": AGREEMENT,
-        "end_difference_mm": check.end_difference_mm(),
-        "end_difference_target_mm": END_DIFFERENCE_MM,
-        "passed": check.passed(),
-        "trials": check.trials.iter().map(trial).collect::<Vec<_>>(),
-        "windows": pairs::json(&check.windows, None, "engine", ["first", "second"]),
-    })
 }

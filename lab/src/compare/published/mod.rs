@@ -4,7 +4,7 @@ mod table;
 #[cfg(test)]
 mod tests;
 
-pub use table::{accuracy, csv, json};
+pub use table::{accuracy, csv};
 
 use super::failures;
 use ask_tell::statistics::{mean, spearman};
@@ -23,16 +23,12 @@ use insertion::task::{StartRule, Task};
 use insertion::trial::NEVER;
 use insertion::trial::engine::EngineKind;
 use rayon::prelude::*;
-use serde::Serialize;
 
-/// Sources of a tolerable range (width of a tolerance window): our simulation, the published simulation, the published
-/// experiments.
-pub const SOURCES: [&str; 3] = ["ours", "simulation", "bench"];
-/// Compared sources, each with its reference, as indices of [`SOURCES`].
+/// Compared sources, each with its reference: 0 our simulation, 1 the published simulation, 2 the published experiments.
 pub const COMPARISONS: [[usize; 2]; 3] = [[0, 1], [0, 2], [1, 2]];
 
 /// Tolerable range and the failure classes at its ends, from one source.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reading {
     pub range_mm: Option<f64>,
     pub failure_negative: Option<FailureClass>,
@@ -44,7 +40,7 @@ pub struct Reading {
 pub struct DesignRow {
     pub design: Measurement,
     pub window: Window,
-    /// Reading of each of [`SOURCES`].
+    /// Reading of each source, numbered as in [`COMPARISONS`].
     pub readings: [Option<Reading>; 3],
 }
 
@@ -91,30 +87,19 @@ impl TaskTable {
 }
 
 /// Agreement of one source with another (the reference) over the designs of a task.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Agreement {
-    pub compared: &'static str,
-    pub reference: &'static str,
-    /// Number of designs with a range from both; the next four values are taken over these.
-    pub designs: usize,
-    /// Mean of `|range - reference|`, mm; `None` without designs.
+    /// Mean of `|range - reference|` over the designs with a range from both, mm; `None` without designs.
     pub mean_absolute_error_mm: Option<f64>,
-    /// Mean of `range - reference`, mm: an offset common to all designs.
-    pub mean_error_mm: Option<f64>,
-    /// Mean of `|range - reference| / reference`, percent.
-    pub mean_deviation_percent: Option<f64>,
-    /// Rank correlation, -1 to 1; see [`spearman`].
+    /// Rank correlation over the same designs, -1 to 1; see [`spearman`].
     pub spearman: Option<f64>,
-    /// Number of window ends with the same failure class from both.
-    pub matched_ends: usize,
-    /// Number of window ends with a failure class from the reference.
-    pub ends: usize,
-    /// The paper's failure match score, percent: `matched_ends / ends`; `None` without ends.
+    /// The paper's failure match score: of the window ends with a failure class from the reference, the share with the
+    /// same class from both, percent; `None` without ends.
     pub match_percent: Option<f64>,
 }
 
 impl Agreement {
-    /// Compares a source with a reference, as indices of [`SOURCES`].
+    /// Compares a source with a reference, numbered as in [`COMPARISONS`].
     ///
     /// An end without a class from the source counts as not matched.
     pub fn new(rows: &[DesignRow], [compared, reference]: [usize; 2]) -> Self {
@@ -122,9 +107,6 @@ impl Agreement {
         let readings: Vec<_> = rows.iter().filter_map(both).collect();
         let pairs: Vec<(f64, f64)> =
             readings.iter().filter_map(|(a, b)| a.range_mm.zip(b.range_mm)).collect();
-        let average = |measure: &dyn Fn(f64, f64) -> f64| {
-            mean(pairs.iter().map(|&(range, reference)| measure(range, reference)))
-        };
         let ends: Vec<_> = readings
             .iter()
             .flat_map(|(a, b)| {
@@ -136,15 +118,8 @@ impl Agreement {
         let matched_ends = ends.iter().filter(|(a, b)| a == b).count();
         let match_percent = 100.0 * matched_ends as f64 / ends.len() as f64;
         Agreement {
-            compared: SOURCES[compared],
-            reference: SOURCES[reference],
-            designs: pairs.len(),
-            mean_absolute_error_mm: average(&|a, b| (a - b).abs()),
-            mean_error_mm: average(&|a, b| a - b),
-            mean_deviation_percent: average(&deviation_percent),
+            mean_absolute_error_mm: mean(pairs.iter().map(|(a, b)| (a - b).abs())),
             spearman: spearman(&pairs),
-            matched_ends,
-            ends: ends.len(),
             match_percent: (!ends.is_empty()).then_some(match_percent),
         }
     }

@@ -1,10 +1,8 @@
 //! `validation.csv`, `accuracy.md` and the JSON of the command.
 
 use super::{Agreement, COMPARISONS, DesignRow, TaskTable, deviation_percent};
-use crate::compare::{subject_json, window_json};
 use input::units::N_PER_MM;
 use insertion::outcome::Outcome;
-use serde_json::{Value, json};
 
 /// Columns of `validation.csv`; a deviation is `|range - reference| / reference`.
 pub const CSV_HEADER: &str = "task,design,infill_density_percent,infill_direction_deg,\
@@ -89,26 +87,4 @@ fn words(found: Agreement) -> String {
         value(found.match_percent, &|share| format!("{share:.1} %")),
     ]
     .join(", ")
-}
-
-/// Returns a JSON list of tasks with `designs` and `agreement`.
-pub fn json(tables: &[TaskTable]) -> Value {
-    let design = |task: &str, row: &DesignRow| {
-        let [ours, simulation, bench] = row.readings;
-        let results = json!({
-            "window": window_json(&row.window),
-            "ours": ours,
-            "simulation": simulation,
-            "bench": bench,
-        });
-        subject_json(task, &row.design, results)
-    };
-    let task = |table: &TaskTable| {
-        json!({
-            "task": table.task,
-            "designs": table.rows.iter().map(|row| design(&table.task, row)).collect::<Vec<_>>(),
-            "agreement": table.agreements(),
-        })
-    };
-    tables.iter().map(task).collect()
 }

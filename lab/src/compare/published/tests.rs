@@ -22,7 +22,6 @@ fn table(task: &str) -> TaskTable {
 fn published_match_scores_are_the_papers() {
     for (task, score) in [("ket12", 100.0), ("ket8", 100.0), ("rj45", 54.5), ("usb", 27.3)] {
         let found = Agreement::new(&table(task).rows, [1, 2]);
-        assert_eq!(found.ends, 22, "{task}");
         assert!((found.match_percent.unwrap() - score).abs() < 0.05, "{task}: {found:?}");
     }
 }
@@ -30,13 +29,9 @@ fn published_match_scores_are_the_papers() {
 #[test]
 fn missing_bench_ranges_are_skipped() {
     let found = Agreement::new(&table("ket12").rows, [1, 2]);
-    assert_eq!(found.designs, 7);
     // |4.5-7.8| + |4.4-7.5| + |4.7-7.8| + |4.6-7.7| + |4.6-7.2| + |4.6-6.5| + |4.6-6.6|
-    // = 3.3 + 3.1 + 3.1 + 3.1 + 2.6 + 1.9 + 2.0 = 19.1, all below the experiment.
+    // = 3.3 + 3.1 + 3.1 + 3.1 + 2.6 + 1.9 + 2.0 = 19.1
     assert!((found.mean_absolute_error_mm.unwrap() - 19.1 / 7.0).abs() < 1e-9);
-    assert!((found.mean_error_mm.unwrap() + 19.1 / 7.0).abs() < 1e-9);
-    // 42.3 + 41.3 + 39.7 + 40.2 + 36.1 + 29.2 + 30.3 as printed in the paper.
-    assert!((found.mean_deviation_percent.unwrap() - 259.1 / 7.0).abs() < 0.1);
 }
 
 #[test]
@@ -50,16 +45,15 @@ fn agreement_of_three_designs_by_hand() {
     let designs = insertion::stiffness::designs();
     let found = TaskTable::new("usb", designs.into_iter().zip(windows)).agreements()[0];
     assert!((found.mean_absolute_error_mm.unwrap() - (1.0 + 0.6 + 0.3) / 3.0).abs() < 1e-9);
-    assert!((found.mean_error_mm.unwrap() - (-1.0 + 0.6 - 0.3) / 3.0).abs() < 1e-9);
     assert!((found.spearman.unwrap() - 0.5).abs() < 1e-12);
-    assert_eq!((found.matched_ends, found.ends), (4, 6));
+    assert!((found.match_percent.unwrap() - 100.0 * 4.0 / 6.0).abs() < 1e-9);
 }
 
 #[test]
 fn a_nominal_start_that_does_not_insert_has_no_match_and_a_range_of_0_unless_it_diverges() {
-    for (task, nominal, counted, cells) in [
-        ("usb", Outcome::Diverged, 0, ",diverged,0,0,,,,9.0"),
-        ("ket8", Outcome::Failed(FailureClass::Jammed), 1, ",3,0,0,0.0,,,7.2"),
+    for (task, nominal, error_mm, cells) in [
+        ("usb", Outcome::Diverged, None, ",diverged,0,0,,,,9.0"),
+        ("ket8", Outcome::Failed(FailureClass::Jammed), Some(7.2), ",3,0,0,0.0,,,7.2"),
     ] {
         let end = Some(nominal);
         let (steps, ends) = ([0, 0], [FailureClass::Jammed; 2]);
@@ -67,8 +61,8 @@ fn a_nominal_start_that_does_not_insert_has_no_match_and_a_range_of_0_unless_it_
             Window { nominal, end_negative: end, end_positive: end, ..window(steps, ends) };
         let table = TaskTable::new(task, insertion::stiffness::designs().into_iter().zip([failed]));
         let found = table.agreements()[0];
-        assert_eq!((found.designs, found.matched_ends, found.ends), (counted, 0, 2));
-        assert_eq!(found.mean_absolute_error_mm, (counted > 0).then_some(7.2));
+        assert_eq!(found.match_percent, Some(0.0));
+        assert_eq!(found.mean_absolute_error_mm, error_mm);
         assert!(csv(&[table]).lines().nth(1).unwrap().contains(cells));
     }
 }

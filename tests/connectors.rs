@@ -351,6 +351,22 @@ fn depths_count_from_the_opening_of_a_plug_with_a_nose() {
     assert!(checked.stdout.contains("`approach` ends inside of the socket"), "{}", checked.stdout);
 }
 
+/// A spring that the plug would push aside is listed, drawn, and out of the way.
+#[test]
+fn a_contact_spring_is_drawn_and_touches_nothing() {
+    let folder = Studies::new();
+    let [plug, mut socket] = header();
+    socket.push(block([2.9, 3.2], [-1.0, 1.0], [3.0, 5.0]));
+    let found = imported(&folder, "sprung", [plug, socket]).json();
+    let left_out = found["left_out"].as_array().unwrap();
+    assert_eq!((left_out.len(), &left_out[0]["body"]), (1, &"socket".into()), "{found}");
+    assert_eq!(found["check"]["nominal"]["outcome"], "inserted", "{found}");
+    let task = folder.word("sprung.toml");
+    let page = folder.word("sprung.html");
+    optimize(&["task", "show", &task, "--html", &page]).succeeds();
+    assert!(folder.read("sprung.html").contains(r#""kind":"spring""#));
+}
+
 /// Plate with two slots for a bar, the second 0.1 mm deeper.
 fn slots() -> [Vec<Block>; 2] {
     let z = [-8.1, 0.0];

@@ -10,6 +10,7 @@ use connector::mesh::axes::{Along, Jaws, Unit, value};
 use connector::mesh::mated::{GAP, HANDLE, Interference, Pair, PairTask, TOLERANCE, task};
 use connector::mesh::{self, Files, SIZES, Surface, Triangle, reduced};
 use connector::write::origin;
+use input::counted;
 use input::units::MM;
 use insertion::task::Task;
 use nalgebra::{Point3, Vector3};
@@ -218,8 +219,8 @@ fn described(
         let rounded = |p: Point3<f64>| [p.x, p.y, p.z].map(|v| (v / MM * 100.0).round() / 100.0);
         let [from, to] = left.bounds.map(rounded);
         let why = format!(
-            "{} parts of the {} overlap by up to {:.3} mm, from {from:?} to {to:?} mm: {}",
-            left.parts,
+            "{} of the {}, up to {:.3} mm, from {from:?} to {to:?} mm: {}",
+            counted(left.parts, "part"),
             BODIES[left.body],
             left.depth / MM,
             match left.cut_back {

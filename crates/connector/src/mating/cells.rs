@@ -39,6 +39,24 @@ impl CellSet {
         self.index(cell).is_some_and(|index| self.filled[index])
     }
 
+    /// Returns the set with all cells within a distance along both axes, in cells.
+    pub fn dilated(&self, reach: usize) -> CellSet {
+        if self.is_empty() { CellSet::default() } else { self.spread(0, reach).spread(1, reach) }
+    }
+
+    fn spread(&self, axis: usize, reach: usize) -> CellSet {
+        let (mut first, mut count) = (self.first, self.count);
+        first[axis] -= reach as i32;
+        count[axis] += 2 * reach;
+        let mut filled = vec![false; count[0] * count[1]];
+        let step = if axis == 0 { 1 } else { count[0] };
+        for (index, _) in self.filled.iter().enumerate().filter(|(_, filled)| **filled) {
+            let start = index / self.count[0] * count[0] + index % self.count[0];
+            (0..=2 * reach).for_each(|i| filled[start + i * step] = true);
+        }
+        CellSet { first, count, filled }
+    }
+
     /// Returns the index of a cell in the bitmap; `None` outside of the rectangle.
     fn index(&self, [x, y]: [i32; 2]) -> Option<usize> {
         // A negative number becomes larger than any count.
@@ -100,6 +118,14 @@ mod tests {
             prop_assert_eq!(set.is_empty(), cells.is_empty());
             let near = (-9..12).flat_map(|y| (-9..12).map(move |x| [x, y]));
             prop_assert!(near.into_iter().all(|cell| set.contains(cell) == cells.contains(&cell)));
+            let reach = cells.len() % 3;
+            let wide = set.dilated(reach);
+            for (x, y) in (-12..32).flat_map(|x| (-12..32).map(move |y| (x, y))) {
+                let near = cells.iter().any(|[a, b]| {
+                    (a - x).abs().max((b - y).abs()) <= reach as i32
+                });
+                prop_assert_eq!(wide.contains([x, y]), near);
+            }
             prop_assert_eq!(set.depth(), eroded(cells.into_iter().collect()));
         }
     }

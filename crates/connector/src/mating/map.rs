@@ -276,13 +276,13 @@ pub fn rest(socket: &HeightMap, plug: &HeightMap, shift: [i32; 2], enough: f32) 
     highest
 }
 
-/// Returns the largest height of a plug's cells, in its own frame, that a socket holds at least as high as `least`, m, with
-/// the plug shifted by whole cells; [`NOWHERE`] below zero if there are none.
-pub fn highest_touching([socket, plug]: [&HeightMap; 2], [dx, dy]: [i32; 2], least: f32) -> f32 {
-    let held = |([x, y], height): ([i32; 2], &f32)| {
-        (socket.at(x + dx, y + dy) - height >= least).then_some(*height)
-    };
-    plug.cells().zip(&plug.heights).filter_map(held).fold(-NOWHERE, f32::max)
+/// Returns the cells of a plug, shifted by whole cells, that a socket holds at least as high as `least`, m.
+pub fn touching<'a>(
+    [socket, plug]: [&'a HeightMap; 2],
+    [dx, dy]: [i32; 2],
+    least: f32,
+) -> impl Iterator<Item = [i32; 2]> + use<'a> {
+    plug.cells().filter(move |&[x, y]| socket.at(x + dx, y + dy) - plug.at(x, y) >= least)
 }
 
 fn row_rest(socket: &[f32], plug: &[f32], highest: f32) -> f32 {

@@ -3,7 +3,7 @@
 use super::Mate;
 use super::cells::CellSet;
 use super::frame::{Parts, rotations_to_z, turns};
-use super::map::{Envelope, HeightMap, Window, rest};
+use super::map::{Envelope, HeightMap, Window, rest, touching};
 use super::refine::{Fine, Pose};
 use super::search::Scene;
 use crate::mesh::Triangle;
@@ -18,6 +18,8 @@ const MOST_CELLS: f64 = 1.5e6;
 const LIFT: f64 = 0.1 * MM;
 /// Width of the margin around interfering cells that is left out with them, m.
 const MARGIN: f64 = 0.1 * MM;
+/// Number of times that the cells left out are extended along a spring that the plug touches beside them.
+const SPRING_ROUNDS: usize = 20;
 /// Number of times that the plug is centred, in x and then in y.
 const ROUNDS: usize = 2;
 
@@ -26,8 +28,10 @@ struct PlayMeasurement<'a> {
     socket: &'a [Triangle],
     plug: &'a [Triangle],
     window: Window,
-    /// Cells of the plug in which the parts interfere, with a margin around them.
-    interfering: CellSet,
+    /// Cells of the plug in which the parts interfere.
+    interfering: Vec<[i32; 2]>,
+    /// These cells with one and with two margins around them.
+    around: [CellSet; 2],
     /// Side of these cells, m.
     step: f64,
     /// Shift of the plug in x and y, m.
@@ -48,37 +52,87 @@ impl PlayMeasurement<'_> {
         maps
     }
 
+    /// Returns the cell of the plug at a place, m.
+    fn cell(&self, place: [f64; 2]) -> [i32; 2] {
+        [0, 1].map(|a| ((place[a] - self.shift[a]) / self.step).floor() as i32)
+    }
+
+    /// Leaves out more cells.
+    fn leave_out(&mut self, cells: impl IntoIterator<Item = [i32; 2]>) {
+        self.interfering.extend(cells);
+        let margin = (MARGIN / self.step).ceil() as usize;
+        let cells = CellSet::new(&self.interfering);
+        self.around = [margin, 2 * margin].map(|reach| cells.dilated(reach));
+    }
+
+    /// Returns the cells in which the plug touches the socket at an offset, if all are beside those left out, as along a
+    /// spring that gets out of its way; else none.
+    fn spring(
+        &self,
+        [upper, lower]: [&HeightMap; 2],
+        shift: [i32; 2],
+        height: f64,
+    ) -> Vec<[i32; 2]> {
+        let at = |[x, y]: [i32; 2]| {
+            let [i, j] = [x + shift[0] - upper.first[0], y + shift[1] - upper.first[1]];
+            self.cell([upper.middle(0, i as usize), upper.middle(1, j as usize)])
+        };
+        let near = |cell: &[i32; 2]| self.around[1].contains(*cell);
+        let cells: Vec<_> = touching([upper, lower], shift, height as f32).map(at).collect();
+        if cells.iter().all(near) { cells } else { Vec::new() }
+    }
+
     /// Clears the interfering cells of a map.
     fn clear_interference(&self, map: &mut HeightMap) {
         if self.interfering.is_empty() {
             return;
         }
+        let [left_out, _] = &self.around;
         let (nx, empty) = (map.count[0], map.envelope.empty());
         for index in 0..map.heights.len() {
-            let place = [map.middle(0, index % nx), map.middle(1, index / nx)];
-            let cell = [0, 1].map(|a| ((place[a] - self.shift[a]) / self.step).floor() as i32);
-            if self.interfering.contains(cell) {
+            if left_out.contains(self.cell([map.middle(0, index % nx), map.middle(1, index / nx)]))
+            {
                 map.heights[index] = empty;
             }
         }
     }
 
+    /// Returns the smallest and the largest offset along a lateral axis, in cells, between which the plug is free at a
+    /// height, m; they are searched up to `max_play`, m, to either side.
+    fn free(
+        &self,
+        [upper, lower]: [&HeightMap; 2],
+        axis: usize,
+        height: f64,
+        max_play: f64,
+    ) -> Option<[i32; 2]> {
+        let free =
+            |offset: &i32| rest(upper, lower, along(axis, *offset), height as f32) < height as f32;
+        let most = (max_play / CELL) as i32;
+        // The pose comes from coarser maps and may overlap by a cell or two of those.
+        let first = (0..=most / 8).flat_map(|k| [k, -k]).find(free)?;
+        let high = (first..first + most).take_while(free).last().unwrap_or(first);
+        let low = (first - most..=first).rev().take_while(free).last().unwrap_or(first);
+        Some([low, high])
+    }
+
     /// Centres the plug along a lateral axis at a height, m, and returns its total play, m; it is measured up to
     /// `max_play` to either side.
     fn centre(&mut self, axis: usize, height: f64, max_play: f64) -> f64 {
-        let [upper, lower] = self.maps(axis);
-        let free = |offset: i32| {
-            let mut shift = [0; 2];
-            shift[axis] = offset;
-            rest(&upper, &lower, shift, height as f32) < height as f32
-        };
-        let most = (max_play / CELL) as i32;
-        // The pose comes from coarser maps and may overlap by a cell or two of those.
-        let Some(first) = (0..=most / 8).flat_map(|k| [k, -k]).find(|k| free(*k)) else {
-            return 0.0;
-        };
-        let high = (first..first + most).take_while(|k| free(*k)).last().unwrap_or(first);
-        let low = (first - most..=first).rev().take_while(|k| free(*k)).last().unwrap_or(first);
+        let mut found = None;
+        for _ in 0..SPRING_ROUNDS {
+            let [upper, lower] = &self.maps(axis);
+            let maps = [upper, lower];
+            let Some([low, high]) = self.free(maps, axis, height, max_play) else { break };
+            found = Some([low, high]);
+            let beyond = [low - 1, high + 1].map(|offset| along(axis, offset));
+            let springs = beyond.map(|shift| self.spring(maps, shift, height)).concat();
+            if springs.is_empty() {
+                break;
+            }
+            self.leave_out(springs);
+        }
+        let Some([low, high]) = found else { return 0.0 };
         self.shift[axis] += f64::from(low + high) / 2.0 * CELL;
         f64::from(high - low + 1) * CELL
     }
@@ -90,18 +144,22 @@ impl PlayMeasurement<'_> {
     }
 }
 
+/// Returns the shift by an offset along an axis.
+fn along(axis: usize, offset: i32) -> [i32; 2] {
+    let mut shift = [0; 2];
+    shift[axis] = offset;
+    shift
+}
+
 /// Measures resting height and play at a pose and returns the mate in the frames of the files.
 pub fn mate(parts: &Parts, scene: &Scene, pose: &Pose, max_play: f64) -> Mate {
     let fine = Fine::new(scene, pose, max_play);
-    let margin = (MARGIN / fine.step).ceil() as i32;
-    let about = move |[x, y]: [i32; 2]| {
-        (-margin..=margin).flat_map(move |dy| (-margin..=margin).map(move |dx| [x + dx, y + dy]))
-    };
-    let interfering: Vec<_> = fine.overlap(pose).into_iter().flat_map(about).collect();
-    let interfering = CellSet::new(&interfering);
     let (socket, plug) = (&scene.sockets[pose.out], &scene.plugs[pose.turn]);
     let (window, step, shift) = (fine.window, fine.step, pose.shift);
-    let mut measurement = PlayMeasurement { socket, plug, window, interfering, step, shift };
+    let (interfering, around) = (Vec::new(), Default::default());
+    let mut measurement =
+        PlayMeasurement { socket, plug, window, interfering, around, step, shift };
+    measurement.leave_out(fine.overlap(pose));
     let height = pose.z + LIFT;
     let mut play_m = [0.0; 2];
     for _ in 0..ROUNDS {

@@ -2,7 +2,7 @@
 
 use super::cells::CellSet;
 use super::engagement::{PlugWalls, SIDES, SocketWalls, overlap, score};
-use super::map::{Envelope, HeightMap, NOWHERE, Window, bounds, highest_touching, rest};
+use super::map::{Envelope, HeightMap, NOWHERE, Window, bounds, rest, touching};
 use super::search::{CoarseSeat, FINE, Scene};
 use super::{MatingError, check_cancelled};
 use input::units::MM;
@@ -262,7 +262,8 @@ impl Fine {
         let (s, p) = (self.upper.eroded(free / 2), self.tight.eroded(free - free / 2));
         let (height, at) = freed(&s, &p, shift, side);
         let depth = (f64::from(height) - pose.z).max(0.0);
-        let met = highest_touching([&s, &p], at, height - LEVEL);
+        let met = touching([&s, &p], at, height - LEVEL).map(|[x, y]| p.at(x, y));
+        let met = met.fold(-NOWHERE, f32::max);
         let nose = (f64::from(met) - self.heights[1][0]).max(0.0);
         Pose { depth, nose, ..pose }
     }

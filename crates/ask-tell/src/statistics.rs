@@ -56,6 +56,12 @@ impl Moments {
     }
 }
 
+/// Returns the smallest and the largest value; infinity and minus infinity without values.
+pub fn span(values: impl IntoIterator<Item = impl Borrow<f64>>) -> [f64; 2] {
+    let values = values.into_iter().map(|value| *value.borrow());
+    values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
+}
+
 /// Returns the median; `None` without values. For an even number of values it is the larger of
 /// the two middle ones.
 pub fn median(values: impl IntoIterator<Item = f64>) -> Option<f64> {

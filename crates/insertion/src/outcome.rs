@@ -85,26 +85,22 @@ impl Outcome {
 
     /// Returns the name for texts; for a failure, the name of its class.
     pub fn label(self) -> &'static str {
-        match self {
-            Outcome::Failed(class) => class.label(),
-            other => other.word(),
-        }
+        self.class().map_or(self.word(), FailureClass::label)
     }
 
     /// Returns a short name for plots.
     pub fn short(self) -> &'static str {
-        match self {
-            Outcome::Failed(class) => class.short(),
-            other => other.word(),
-        }
+        self.class().map_or(self.word(), FailureClass::short)
+    }
+
+    /// Returns the failure class; `None` unless the trial failed.
+    pub fn class(self) -> Option<FailureClass> {
+        if let Outcome::Failed(class) = self { Some(class) } else { None }
     }
 
     /// Returns the number of the failure class, 1 to 4; `None` unless the trial failed.
     pub fn failure(self) -> Option<u8> {
-        match self {
-            Outcome::Failed(class) => Some(class.number()),
-            _ => None,
-        }
+        self.class().map(FailureClass::number)
     }
 }
 

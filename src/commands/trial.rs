@@ -16,7 +16,7 @@ use calibration::identify::log::of_samples;
 use input::units::MM;
 use insertion::evaluation::grid_mm;
 use insertion::outcome::Outcome;
-use insertion::trial::{Grasp, Probe, Sample, Trial, picture};
+use insertion::trial::{Grasp, Sample, Trial, picture};
 use report::answer::lines;
 use report::answer::words::number;
 use report::text_table;
@@ -123,7 +123,7 @@ impl Request {
         let (trial, samples) = match (self.every_s, filmed) {
             _ if self.probe => {
                 let rig = setup.evaluator.rig(scenario, None, 1.0).map_err(Failure::input)?;
-                rig.probe(grasp, &Probe::DEFAULT, STEP_S).ok_or_else(undriven)?
+                rig.probe(grasp, STEP_S).ok_or_else(undriven)?
             }
             _ if self.log.is_some() => rig.grasp(grasp).logged(offset, STEP_S),
             (None, Some(recording)) => (recording.trial, Vec::new()),

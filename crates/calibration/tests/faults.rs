@@ -16,7 +16,7 @@ use insertion::outcome::Outcome;
 use insertion::robot::Robot;
 use insertion::space::Design;
 use insertion::trial::engine::EngineKind;
-use insertion::trial::{Grasp, NEVER, Probe};
+use insertion::trial::{Grasp, NEVER};
 use insertion::{stiffness, surrogate};
 use rayon::prelude::*;
 
@@ -109,7 +109,7 @@ fn recorded(evaluator: &Evaluator, cell: u64) -> Vec<Recorded> {
         let starts = [mm("start"), mm("negative") + 0.2, mm("positive") + 0.2];
         for start in [None].into_iter().chain(starts.map(Some)) {
             let (outcome, samples) = match start {
-                None => (None, rig.probe(grasp, &Probe::DEFAULT, STEP_S).unwrap().1),
+                None => (None, rig.probe(grasp, STEP_S).unwrap().1),
                 Some(mm) => {
                     let (trial, samples) = rig.grasp(grasp).logged(mm * MM, STEP_S);
                     (Some(trial.outcome), samples)

@@ -22,7 +22,7 @@ pub mod picture;
 pub mod record;
 pub mod run;
 
-pub use attempt::commanded::{Probe, Trajectory};
+pub use attempt::commanded::{PROBE_FORCE, PROBE_SLIDES, PROBE_SPEED, PROBE_STROKE, Trajectory};
 pub use attempt::driven::{Driven, State};
 pub use conditions::Conditions;
 pub use motion::Tcp;
@@ -141,7 +141,7 @@ pub trait Rig: Send + Sync {
 
     /// Returns the trial of a friction probe on a flat plate that replaces the socket, with its top at z = 0, sampled
     /// every `every_s` seconds; `None` if the rig does not simulate.
-    fn probe(&self, _grasp: Grasp<'_>, _probe: &Probe, _every_s: f64) -> Option<Followed> {
+    fn probe(&self, _grasp: Grasp<'_>, _every_s: f64) -> Option<Followed> {
         None
     }
 

@@ -3,7 +3,7 @@
 use super::attempt::driven::Driven;
 use super::attempt::{Attempt, Stop};
 use super::record::{Frame, Recorder, Trace};
-use super::{Followed, Grasp, Grasped, Probe, Recording, Rig, Trajectory, Trial, cell};
+use super::{Followed, Grasp, Grasped, Recording, Rig, Trajectory, Trial, cell};
 use crate::finger::Finger;
 use crate::outcome::Outcome;
 use crate::robot::{MountedRobot, Robot};
@@ -112,10 +112,10 @@ impl Rig for EngineRig {
         followed.collect()
     }
 
-    fn probe(&self, grasp: Grasp<'_>, probe: &Probe, every_s: f64) -> Option<Followed> {
+    fn probe(&self, grasp: Grasp<'_>, every_s: f64) -> Option<Followed> {
         let task = on_plate(&self.task);
         let mut attempt = Attempt::new(&self.robot, &task, &*self.engine, grasp);
-        let end = attempt.grasp().and_then(|()| attempt.probe(probe, every_s));
+        let end = attempt.grasp().and_then(|()| attempt.probe(every_s));
         Some(attempt.result(end).0)
     }
 

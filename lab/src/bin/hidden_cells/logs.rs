@@ -7,8 +7,8 @@ use finger_opt::failure::Failure;
 use input::units::MM;
 use insertion::evaluation::evaluator::Scenario;
 use insertion::space::Design;
+use insertion::trial::Grasp;
 use insertion::trial::engine::EngineKind;
-use insertion::trial::{Grasp, Probe};
 use std::path::Path;
 use study::write_file;
 
@@ -42,7 +42,7 @@ pub fn write(
         for (i, offset_mm) in offsets.into_iter().enumerate() {
             let (samples, outcome) = match offset_mm {
                 None => {
-                    let probed = rig.probe(grasp, &Probe::DEFAULT, STEP_S);
+                    let probed = rig.probe(grasp, STEP_S);
                     let none = || Failure::running("the engine simulates no probe");
                     (probed.ok_or_else(none)?.1, "probe".to_owned())
                 }

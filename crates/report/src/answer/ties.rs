@@ -6,7 +6,7 @@ use ask_tell::process::distance2;
 use ask_tell::statistics::span;
 use input::units::N_PER_MM;
 use insertion::evaluation::objective::Measure;
-use insertion::space::label;
+use parameters::label;
 use study::{Recorded, StudyRecord};
 
 /// Designs whose first objective is worse than that of the recommended design by at most the study's indifference (mm),

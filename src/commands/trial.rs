@@ -194,14 +194,10 @@ fn whole<S: Serializer>(trial: &Trial, serializer: S) -> Result<S::Ok, S::Error>
 }
 
 fn text(trial: &Trial) -> String {
-    let reason = match trial.outcome {
-        Outcome::Failed(class) => format!(": {} (class {})", class.label(), class.number()),
-        Outcome::Inserted | Outcome::Diverged => String::new(),
-    };
     let text = format!(
-        "outcome       {}{reason}\ndepth         {}\ntilt          {}\npeak force    {}\n\
+        "outcome       {}\ndepth         {}\ntilt          {}\npeak force    {}\n\
          slip          {}\n",
-        trial.outcome.word(),
+        trial.outcome,
         number(trial.depth_mm, 2, "mm"),
         number(trial.tilt_deg, 2, "deg"),
         number(trial.peak_force_n, 1, "N"),

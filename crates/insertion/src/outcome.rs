@@ -2,6 +2,7 @@
 
 use parameters::plan::grid::Traceable;
 use serde::{Deserialize, Serialize};
+use std::fmt;
 
 /// Failure class of a trial, numbered as in the paper (Table "Failure Cases").
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -101,6 +102,16 @@ impl Outcome {
     /// Returns the number of the failure class, 1 to 4; `None` unless the trial failed.
     pub fn failure(self) -> Option<u8> {
         self.class().map(FailureClass::number)
+    }
+}
+
+impl fmt::Display for Outcome {
+    /// `inserted`, `diverged` or `failed: jammed (class 3)`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.class() {
+            Some(class) => write!(f, "failed: {} (class {})", class.label(), class.number()),
+            None => f.write_str(self.word()),
+        }
     }
 }
 

@@ -3,7 +3,6 @@
 
 use super::{PhaseEnd, Trial};
 use crate::finger::Pad;
-use crate::outcome::Outcome;
 use crate::task::geometry::convex_outline;
 use crate::task::{Part, Task};
 use ask_tell::statistics::span;
@@ -88,13 +87,9 @@ pub fn final_state(task: &Task, pad: &Pad, trial: &Trial) -> String {
 }
 
 fn outcome(trial: &Trial) -> String {
-    let end = match trial.outcome {
-        Outcome::Failed(class) => format!("failed: {} (class {})", class.label(), class.number()),
-        outcome => outcome.word().to_owned(),
-    };
     format!(
-        "{end}; depth {:.2} mm, tilt {:.2}\u{b0}, peak force {:.1} N, slip {:.2} mm",
-        trial.depth_mm, trial.tilt_deg, trial.peak_force_n, trial.slip_mm
+        "{}; depth {:.2} mm, tilt {:.2}\u{b0}, peak force {:.1} N, slip {:.2} mm",
+        trial.outcome, trial.depth_mm, trial.tilt_deg, trial.peak_force_n, trial.slip_mm
     )
 }
 

@@ -11,7 +11,6 @@ use crate::setup::repeat::RepeatRequest;
 use crate::setup::request::SetupRequest;
 use crate::setup::task::outcome_json;
 use crate::setup::words::{parse_at_least_0, parse_number};
-use calibration::identify::curves::STEP_S;
 use calibration::identify::log::of_samples;
 use input::units::MM;
 use insertion::evaluation::grid_mm;
@@ -123,9 +122,9 @@ impl Request {
         let (trial, samples) = match (self.every_s, filmed) {
             _ if self.probe => {
                 let rig = setup.evaluator.rig(scenario, None, 1.0).map_err(Failure::input)?;
-                rig.probe(grasp, STEP_S).ok_or_else(undriven)?
+                rig.probe(grasp).ok_or_else(undriven)?
             }
-            _ if self.log.is_some() => rig.grasp(grasp).logged(offset, STEP_S),
+            _ if self.log.is_some() => rig.grasp(grasp).logged(offset),
             (None, Some(recording)) => (recording.trial, Vec::new()),
             (every_s, _) => rig.grasp(grasp).run(offset, every_s, 0.0),
         };

@@ -51,7 +51,8 @@ pub(super) fn data(film: &Film) -> Value {
         "jaw1": poses(&|frame| frame.jaws[1]),
     });
     if film.task.plug.latch.is_some() {
-        trajectories["latch"] = json!(poses(&Frame::latch));
+        trajectories["latch"] =
+            json!(poses(&|frame| frame.poses.latch.unwrap_or(frame.poses.plug)));
     }
     json!({
         "label": film.label,

@@ -3,7 +3,7 @@
 use super::{Attempt, Stop};
 use crate::task::Stage;
 use crate::trial::motion::{Move, Tcp};
-use crate::trial::record::Trace;
+use crate::trial::record::{LOG_STEP_S, Trace};
 use input::units::MM;
 use nalgebra::Vector3;
 
@@ -79,9 +79,9 @@ const LIFT_SPEED: f64 = 0.02;
 
 impl Attempt<'_> {
     /// Carries the grasped part to the start of the trajectory, follows the trajectory and records samples of it.
-    pub fn follow(&mut self, trajectory: &Trajectory, every_s: f64) -> Result<(), Stop> {
+    pub fn follow(&mut self, trajectory: &Trajectory) -> Result<(), Stop> {
         self.carry(trajectory.at(0.0))?;
-        self.trace = Some(Trace::new(every_s));
+        self.trace = Some(Trace::new(LOG_STEP_S));
         self.stage = Stage::Search;
         let push = trajectory.push_start();
         // The first sample is at the end of the first step, and has the first target.
@@ -99,10 +99,10 @@ impl Attempt<'_> {
     }
 
     /// Slides the grasped part over the flat face that replaces the socket.
-    pub fn probe(&mut self, every_s: f64) -> Result<(), Stop> {
+    pub fn probe(&mut self) -> Result<(), Stop> {
         let z = self.task.grip.tcp_z + PROBE_HEIGHT;
         self.carry(Tcp { position: Vector3::new(0.0, -0.5 * PROBE_STROKE, z), tilt: 0.0 })?;
-        self.trace = Some(Trace::new(every_s));
+        self.trace = Some(Trace::new(LOG_STEP_S));
         self.stage = Stage::Search;
         self.rest(REST_IN_AIR)?;
         let down = Vector3::new(0.0, 0.0, -PROBE_SPEED);

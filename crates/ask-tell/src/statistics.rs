@@ -12,6 +12,13 @@ pub fn mean(values: impl IntoIterator<Item = impl Borrow<f64>>) -> Option<f64> {
     (count > 0.0).then(|| sum / count)
 }
 
+/// Returns the mean of pairs of a value and its weight; NaN without pairs.
+pub fn weighted_mean(pairs: impl IntoIterator<Item = (f64, f64)>) -> f64 {
+    let add = |(sum, total), (value, weight)| (sum + value * weight, total + weight);
+    let (sum, total) = pairs.into_iter().fold((0.0, 0.0), add);
+    sum / total
+}
+
 /// Number, mean and sum of squared deviations of values.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Moments {

@@ -6,7 +6,7 @@ use insertion::evaluation::{Evaluation, Window, taught::teach};
 use insertion::finger::Finger;
 use insertion::outcome::Outcome;
 use insertion::robot::Robot;
-use insertion::stiffness::designs_by_rank;
+use insertion::stiffness::{Measurement, designs_by_rank};
 use insertion::task::{Limits, StartRule, Strategy, Task};
 use insertion::trial::engine::EngineKind;
 use insertion::trial::run::RigError;
@@ -56,20 +56,15 @@ pub struct Candidate {
     pub cost: usize,
 }
 
-/// Returns six of the measured fingers, by their rank in stiffness: soft, medium and stiff, and three others between
-/// them.
-pub fn fingers() -> [Finger; 6] {
-    let designs = designs_by_rank([0, 5, 10, 2, 4, 8]);
-    designs.map(|design| Finger::new(design.compliance, design.assembly))
-}
-
 impl<'a> Tuner<'a> {
     /// Creates the tuner of a task with its limits of force and speed, and with the robot's stop force unless the
     /// task limits the force.
     pub fn new(task: &'a Task, robot: &'a Robot, engine: EngineKind, stop: &'a AtomicBool) -> Self {
-        let [soft, medium, stiff, others @ ..] =
-            fingers().map(|finger| finger.with_model(&task.finger, 0.0));
-        let fingers = [soft, medium, stiff];
+        let finger = |design: Measurement| {
+            Finger::new(design.compliance, design.assembly).with_model(&task.finger, 0.0)
+        };
+        let fingers = designs_by_rank([0, 5, 10]).map(finger);
+        let others = designs_by_rank([2, 4, 8]).map(finger);
         let force = task.limits.force.or(Some(robot.stop_force));
         let limits = Limits { force, ..task.limits };
         Tuner { task, robot, engine, fingers, others, limits, stop }
@@ -148,16 +143,15 @@ impl<'a> Tuner<'a> {
     /// Scores a strategy by the windows of the three fingers.
     fn tried(&self, strategy: Strategy, found: Vec<Evaluation>) -> Candidate {
         let failed = found.iter().filter(|found| found.window.nominal != Outcome::Inserted);
-        let inserts = failed.clone().next().is_none();
         // If the nominal start fails, the share is its margin.
-        let worst = failed.map(|found| found.end_shares[0]).fold(0.0, f64::min);
+        let worst = failed.map(|found| found.end_shares[0]).reduce(f64::min);
         let force_n = found.iter().map(|found| found.peak_force_n).fold(0.0, f64::max);
         let windows: Vec<_> = found.into_iter().map(|found| found.window).collect();
         let least = windows.iter().map(Window::range_mm).fold(f64::INFINITY, f64::min);
-        let score = match self.limits.force {
+        let score = match (worst, self.limits.force) {
             // A nominal start that fails with a margin of 0 is not a success, either.
-            _ if !inserts => worst - f64::EPSILON,
-            Some(limit) if force_n > limit => 1.0 - force_n / limit,
+            (Some(worst), _) => worst.min(0.0) - f64::EPSILON,
+            (None, Some(limit)) if force_n > limit => 1.0 - force_n / limit,
             _ => least,
         };
         Candidate { strategy, cost: windows.len(), windows, force_n, score, nearest: None }

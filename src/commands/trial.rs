@@ -11,12 +11,11 @@ use crate::setup::repeat::RepeatRequest;
 use crate::setup::request::SetupRequest;
 use crate::setup::task::outcome_json;
 use crate::setup::words::{parse_at_least_0, parse_number};
-use calibration::identify::curves::STEP_S;
 use calibration::identify::log::of_samples;
 use input::units::MM;
 use insertion::evaluation::grid_mm;
 use insertion::outcome::Outcome;
-use insertion::trial::{Grasp, Probe, Sample, Trial, picture};
+use insertion::trial::{Grasp, Sample, Trial, picture};
 use report::answer::lines;
 use report::answer::words::number;
 use report::text_table;
@@ -124,9 +123,9 @@ impl Request {
         let (trial, samples) = match (self.every_s, filmed) {
             _ if self.probe => {
                 let rig = setup.evaluator.rig(scenario, None, 1.0).map_err(Failure::input)?;
-                rig.probe(grasp, &Probe::DEFAULT, STEP_S).ok_or_else(undriven)?
+                rig.probe(grasp).ok_or_else(undriven)?
             }
-            _ if self.log.is_some() => rig.grasp(grasp).logged(offset, STEP_S),
+            _ if self.log.is_some() => rig.grasp(grasp).logged(offset),
             (None, Some(recording)) => (recording.trial, Vec::new()),
             (every_s, _) => rig.grasp(grasp).run(offset, every_s, 0.0),
         };
@@ -195,14 +194,10 @@ fn whole<S: Serializer>(trial: &Trial, serializer: S) -> Result<S::Ok, S::Error>
 }
 
 fn text(trial: &Trial) -> String {
-    let reason = match trial.outcome {
-        Outcome::Failed(class) => format!(": {} (class {})", class.label(), class.number()),
-        Outcome::Inserted | Outcome::Diverged => String::new(),
-    };
     let text = format!(
-        "outcome       {}{reason}\ndepth         {}\ntilt          {}\npeak force    {}\n\
+        "outcome       {}\ndepth         {}\ntilt          {}\npeak force    {}\n\
          slip          {}\n",
-        trial.outcome.word(),
+        trial.outcome,
         number(trial.depth_mm, 2, "mm"),
         number(trial.tilt_deg, 2, "deg"),
         number(trial.peak_force_n, 1, "N"),

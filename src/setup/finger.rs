@@ -212,17 +212,13 @@ impl Serialize for ChosenFinger {
             "set": self.set,
             "finger_model": self.finger_model.name(),
             "rcc_mm": finger.rcc / MM,
-            "rcc_from": match self.scenario.centre_source() {
-                CentreSource::Model => "finger-model",
-                CentreSource::TaskFile => "task",
-                CentreSource::Design => "design",
-            },
+            "rcc_from": self.scenario.centre_source(),
             "tilting_nm_per_rad": finger.rotation[0],
             "stiffness": stiffness,
         });
         if let Some(cell) = &self.cell {
             subject["cell_applied"] = cell.of(&task.name).map(|row| &*row.path).collect();
-            subject["cell_not_applied"] = cell.not_of(&task.name).map(|row| &*row.path).collect();
+            subject["cell_not_applied"] = json!(cell.not_applied(&task.name));
         }
         subject.serialize(serializer)
     }
@@ -263,8 +259,8 @@ impl ChosenFinger {
         }
         let (below, ahead) = (finger.rcc / MM, finger.ahead / MM);
         let given = match self.scenario.centre_source() {
-            CentreSource::Model => String::new(),
-            CentreSource::TaskFile => ", given by the task file, not computed".to_owned(),
+            CentreSource::FingerModel => String::new(),
+            CentreSource::Task => ", given by the task file, not computed".to_owned(),
             CentreSource::Design => format!(", given by {RCC_KEY}, not computed"),
         };
         format!(

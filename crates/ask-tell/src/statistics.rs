@@ -12,6 +12,13 @@ pub fn mean(values: impl IntoIterator<Item = impl Borrow<f64>>) -> Option<f64> {
     (count > 0.0).then(|| sum / count)
 }
 
+/// Returns the mean of pairs of a value and its weight; NaN without pairs.
+pub fn weighted_mean(pairs: impl IntoIterator<Item = (f64, f64)>) -> f64 {
+    let add = |(sum, total), (value, weight)| (sum + value * weight, total + weight);
+    let (sum, total) = pairs.into_iter().fold((0.0, 0.0), add);
+    sum / total
+}
+
 /// Number, mean and sum of squared deviations of values.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Moments {
@@ -54,6 +61,12 @@ impl Moments {
     pub fn sample_deviation(&self) -> f64 {
         self.sample_variance().sqrt()
     }
+}
+
+/// Returns the smallest and the largest value; infinity and minus infinity without values.
+pub fn span(values: impl IntoIterator<Item = impl Borrow<f64>>) -> [f64; 2] {
+    let values = values.into_iter().map(|value| *value.borrow());
+    values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
 }
 
 /// Returns the median; `None` without values. For an even number of values it is the larger of

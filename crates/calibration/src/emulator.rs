@@ -86,12 +86,9 @@ impl Emulator {
             let evaluation = simulation.window(&design, levels)?;
             done();
             let window = &evaluation.window;
-            let class = |end: Option<Outcome>| FailureClass::try_from(end?.failure()?).ok();
-            Ok(Point {
-                range_mm: window.range_mm(),
-                failures: [class(window.end_negative), class(window.end_positive)],
-                at,
-            })
+            let failures =
+                [window.end_negative, window.end_positive].map(|end| end.and_then(Outcome::class));
+            Ok(Point { range_mm: window.range_mm(), failures, at })
         };
         let points =
             points.into_par_iter().map(run).collect::<Result<Vec<Point>, CalibrationError>>()?;

@@ -1,7 +1,6 @@
 //! Logs of simulated cells with a fault each: the checks report its likely cause, and nothing for logs without a fault.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use calibration::identify::curves::STEP_S;
 use calibration::identify::log::{Run, of_samples};
 use calibration::identify::question::Identification;
 use calibration::identify::read;
@@ -16,7 +15,7 @@ use insertion::outcome::Outcome;
 use insertion::robot::Robot;
 use insertion::space::Design;
 use insertion::trial::engine::EngineKind;
-use insertion::trial::{Grasp, NEVER, Probe};
+use insertion::trial::{Grasp, NEVER};
 use insertion::{stiffness, surrogate};
 use rayon::prelude::*;
 
@@ -109,9 +108,9 @@ fn recorded(evaluator: &Evaluator, cell: u64) -> Vec<Recorded> {
         let starts = [mm("start"), mm("negative") + 0.2, mm("positive") + 0.2];
         for start in [None].into_iter().chain(starts.map(Some)) {
             let (outcome, samples) = match start {
-                None => (None, rig.probe(grasp, &Probe::DEFAULT, STEP_S).unwrap().1),
+                None => (None, rig.probe(grasp).unwrap().1),
                 Some(mm) => {
-                    let (trial, samples) = rig.grasp(grasp).logged(mm * MM, STEP_S);
+                    let (trial, samples) = rig.grasp(grasp).logged(mm * MM);
                     (Some(trial.outcome), samples)
                 }
             };

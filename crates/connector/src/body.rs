@@ -1,5 +1,6 @@
 //! Plug or socket as a set of convex parts: overlaps, gaps, extents, clipping.
 
+pub use ask_tell::statistics::span;
 use contact::scene::Pose;
 use contact::shapes;
 use input::units::MM;
@@ -197,11 +198,6 @@ pub fn longest_side(points: &[Point3<f64>]) -> f64 {
 
 pub fn width([low, high]: [f64; 2]) -> f64 {
     high - low
-}
-
-/// Returns the smallest and the largest number; infinity and minus infinity without numbers.
-pub fn span(values: impl Iterator<Item = f64>) -> [f64; 2] {
-    values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
 }
 
 /// Returns the corners of a convex part clipped by two planes perpendicular to an axis: the corners between the planes,

@@ -17,11 +17,12 @@ pub mod finger;
 mod fixtures;
 pub mod outcome;
 pub mod robot;
-pub mod space;
 pub mod stiffness;
 pub mod surrogate;
 pub mod task;
 pub mod trial;
+
+pub use parameters::space;
 
 /// Returns the name of an option's value on the command line.
 pub fn value_name(of: impl clap::ValueEnum) -> String {

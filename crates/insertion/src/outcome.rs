@@ -2,6 +2,7 @@
 
 use parameters::plan::grid::Traceable;
 use serde::{Deserialize, Serialize};
+use std::fmt;
 
 /// Failure class of a trial, numbered as in the paper (Table "Failure Cases").
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -85,25 +86,31 @@ impl Outcome {
 
     /// Returns the name for texts; for a failure, the name of its class.
     pub fn label(self) -> &'static str {
-        match self {
-            Outcome::Failed(class) => class.label(),
-            other => other.word(),
-        }
+        self.class().map_or(self.word(), FailureClass::label)
     }
 
     /// Returns a short name for plots.
     pub fn short(self) -> &'static str {
-        match self {
-            Outcome::Failed(class) => class.short(),
-            other => other.word(),
-        }
+        self.class().map_or(self.word(), FailureClass::short)
+    }
+
+    /// Returns the failure class; `None` unless the trial failed.
+    pub fn class(self) -> Option<FailureClass> {
+        if let Outcome::Failed(class) = self { Some(class) } else { None }
     }
 
     /// Returns the number of the failure class, 1 to 4; `None` unless the trial failed.
     pub fn failure(self) -> Option<u8> {
-        match self {
-            Outcome::Failed(class) => Some(class.number()),
-            _ => None,
+        self.class().map(FailureClass::number)
+    }
+}
+
+impl fmt::Display for Outcome {
+    /// `inserted`, `diverged` or `failed: jammed (class 3)`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.class() {
+            Some(class) => write!(f, "failed: {} (class {})", class.label(), class.number()),
+            None => f.write_str(self.word()),
         }
     }
 }

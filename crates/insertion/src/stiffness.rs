@@ -113,12 +113,19 @@ pub fn designs() -> Vec<Measurement> {
     parse(STIFFNESS[0].text, STIFFNESS[0].file).unwrap_or_default()
 }
 
-/// Returns the designs of the paper with the lowest, median and highest stiffness in the compliance direction.
-pub fn representative_designs() -> Vec<Measurement> {
+/// Returns designs of the paper by their rank in stiffness in the compliance direction: 0 for the lowest, 10 for the
+/// highest.
+pub fn designs_by_rank<const N: usize>(tenths: [usize; N]) -> [Measurement; N] {
     let mut designs = designs();
     designs.sort_by(|a, b| a.compliance.total_cmp(&b.compliance));
-    let Some(last) = designs.len().checked_sub(1) else { return designs };
-    [0, last / 2, last].map(|i| designs[i]).to_vec()
+    // The shipped file has designs.
+    let last = designs.len() - 1;
+    tenths.map(|tenths| designs[last * tenths / 10])
+}
+
+/// Returns the designs of the paper with the lowest, median and highest stiffness in the compliance direction.
+pub fn representative_designs() -> Vec<Measurement> {
+    designs_by_rank([0, 5, 10]).to_vec()
 }
 
 /// Reads a measurement file and checks each value by itself.

@@ -2,8 +2,8 @@
 
 use super::ReportError;
 use super::theme::{Colour, INK, LINES, MUTED, PAPER};
-use crate::answer::words::extent;
 use analysis::levers::thousandths;
+use ask_tell::statistics::span;
 use plotters::coord::Shift;
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
@@ -125,7 +125,7 @@ pub(super) fn text_style(size: u32, colour: Colour, h: HPos, v: VPos) -> TextSty
 /// Returns the interval of the finite values, widened by a share `room` of it on either side; by 0.5 if they are equal,
 /// 0 to 1 if there are none.
 pub(super) fn padded_range(values: impl Iterator<Item = f64>, room: f64) -> Range<f64> {
-    let [low, high] = extent(values.filter(|v| v.is_finite()));
+    let [low, high] = span(values.filter(|v| v.is_finite()));
     if low > high {
         return 0.0..1.0;
     }

@@ -5,8 +5,9 @@ use crate::answer::words::evaluated;
 use insertion::evaluation::Evaluation;
 use insertion::evaluation::objective::Measure;
 use insertion::finger::file::is_shape;
-use insertion::space::{Variable, label};
+use insertion::space::Variable;
 use maud::{Markup, html};
+use parameters::label;
 use study::{Recorded, StudyRecord};
 
 /// Returns the section; `None` if the space has no parameter of the finger's shape.

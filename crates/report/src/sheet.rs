@@ -4,7 +4,7 @@ use super::elements::{data_url, styled};
 use input::units::{DEG, MM};
 use insertion::outcome::Outcome;
 use insertion::task::Task;
-use insertion::trial::Probe;
+use insertion::trial::{PROBE_FORCE, PROBE_SLIDES, PROBE_SPEED, PROBE_STROKE};
 use maud::{Markup, html};
 
 /// Number of boxes to fill in per row.
@@ -71,13 +71,12 @@ fn instructions(task: &Task, pictures: &[Picture]) -> Markup {
 
 /// Returns the instructions for the friction probe: the plug is pressed on a flat face and slides along it.
 fn probe() -> Markup {
-    let Probe { force, stroke, speed, slides } = Probe::DEFAULT;
-    let [stroke, speed] = [stroke, speed].map(|length| length / MM);
+    let [stroke, speed] = [PROBE_STROKE, PROBE_SPEED].map(|length| length / MM);
     html! {
         h2 { "First the probe, once with each finger" }
         p { "Hold the plug upright over the flat face beside the opening. Start a log of time, force, pose and commanded "
-            "pose, 125 Hz or more, while the plug is in the air. Press it against the face with " (force) " N and slide "
-            "it " (stroke) " mm along y, back and forth, " (slides / 2) " times, at " (speed) " mm/s. Stop if it catches. "
+            "pose, 125 Hz or more, while the plug is in the air. Press it against the face with " (PROBE_FORCE) " N and slide "
+            "it " (stroke) " mm along y, back and forth, " (PROBE_SLIDES / 2) " times, at " (speed) " mm/s. Stop if it catches. "
             "Lift it off, then end the log. Log each insertion, too: every log is a line of runs.csv (log, "
             "infill_density_percent, infill_direction_deg, offset_mm, outcome; outcome: probe, inserted or the class), "
             "which optimize identify reads." }

@@ -1,9 +1,9 @@
 //! Model of the first objective over the space for the explorer: a Gaussian process fitted to the evaluations, like
 //! that of the optimizer `gp`.
 
-use crate::answer::words::{extent, rounded};
+use crate::answer::words::rounded;
 use ask_tell::gp::{FitEffort, Gp, fit};
-use ask_tell::statistics::Moments;
+use ask_tell::statistics::{Moments, span};
 use insertion::space::Variable;
 use serde_json::{Value, json};
 use study::{Recorded, StudyRecord};
@@ -85,6 +85,6 @@ fn influence(model: &impl Fn(&[f64]) -> (f64, f64), base: &[f64], axis: usize) -
         point[axis] = f64::from(level) / f64::from(LEVELS);
         model(&point).0
     });
-    let [low, high] = extent(along);
+    let [low, high] = span(along);
     high - low
 }

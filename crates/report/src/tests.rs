@@ -4,7 +4,7 @@ use finray::printed::PrintedFinger;
 use input::shipped::{FINGERS, ROBOTS, STIFFNESS};
 use input::units::N_PER_MM;
 use insertion::evaluation::Evaluation;
-use insertion::evaluation::objective::{Aggregate, Goals, Measure};
+use insertion::evaluation::objective::{Aggregate, Goals, Measure, Objectives};
 use insertion::evaluation::tolerance::{Search, evaluate};
 use insertion::finger::Finger;
 use insertion::outcome::{FailureClass, Outcome};
@@ -64,7 +64,9 @@ fn walked(index: u64, infill: [f64; 2]) -> Recorded {
 
 fn recorded(index: u64, infill: [f64; 2], evaluation: Evaluation) -> Recorded {
     let stiffness = model().predict(infill).unwrap();
-    let score = Goals::of(Measure::Range).score(&[&evaluation]);
+    let objectives = Objectives::of(Measure::Range);
+    let goals = Goals { objectives, constraints: Vec::new(), aggregate: Aggregate::Min };
+    let score = goals.score(&[&evaluation]);
     let design = Design::infill(infill[0], infill[1]);
     let (tasks, timing) = (vec![evaluation], Timing::default());
     Recorded { index, proposal: None, design, score, stiffness, tasks, timing }

@@ -110,7 +110,7 @@ mod tests {
     use super::*;
     use crate::cache::tests::sound;
     use input::shipped::SPACES;
-    use insertion::evaluation::objective::Constraint;
+    use insertion::evaluation::objective::{Aggregate, Objectives};
     use insertion::surrogate::Prediction;
 
     /// Returns a design with a window, mm, and a force, N.
@@ -122,22 +122,23 @@ mod tests {
             index,
             proposal: None,
             design: Design::infill(density, 20.0),
-            score: goals().score(&[&task]),
+            score: goals("peak-force<=200").score(&[&task]),
             stiffness: Prediction::exact(3e3, 2e4),
             tasks: vec![task],
             timing: Default::default(),
         }
     }
 
-    fn goals() -> Goals {
-        let force: Constraint = "peak-force<=200".parse().unwrap();
-        Goals { constraints: vec![force], ..Goals::of(Measure::Range) }
+    fn goals(constraint: &str) -> Goals {
+        let constraints = vec![constraint.parse().unwrap()];
+        let objectives = Objectives::of(Measure::Range);
+        Goals { objectives, constraints, aggregate: Aggregate::Min }
     }
 
     /// Returns the indices in the order of the rule.
     fn ranked(designs: &[Recorded]) -> Vec<u64> {
         let space = Space::parse(SPACES[0].text, SPACES[0].file).unwrap();
-        let rule = Rule { goals: goals(), space: &space };
+        let rule = Rule { goals: goals("peak-force<=200"), space: &space };
         let mut ranks: Vec<Rank> = designs.iter().map(|found| rule.recorded_rank(found)).collect();
         ranks.sort_by(|a, b| rule.order(a, b));
         ranks.iter().map(|rank| rank.index).collect()
@@ -167,9 +168,7 @@ mod tests {
     #[test]
     fn constraints_apply_to_the_searched_window_not_to_its_firm_part() {
         let space = Space::parse(SPACES[0].text, SPACES[0].file).unwrap();
-        let goals =
-            Goals { constraints: vec!["range>=3".parse().unwrap()], ..Goals::of(Measure::Range) };
-        let rule = Rule { goals, space: &space };
+        let rule = Rule { goals: goals("range>=3"), space: &space };
         let mut wide = recorded(0, 20.0, [-20, 20], 50.0);
         wide.score = rule.goals.score(&wide.tasks());
         let mut firm = wide.tasks[0].clone();

@@ -5,7 +5,7 @@
 //! Writes two tables: `benches.csv` (a line for each bench) and `summary.csv` (means for each task and shape).
 
 use ask_tell::normal::StandardNormal;
-use ask_tell::statistics::mean;
+use ask_tell::statistics::{mean, span};
 use ask_tell::stream::stream;
 use calibration::bench::{Observation, sampled};
 use calibration::next::{Fingers, advise};
@@ -149,8 +149,7 @@ fn tenths(mm: f64) -> f64 {
 
 /// Scales values linearly to the range from 0 to 1.
 fn scaled(values: Vec<f64>) -> Vec<f64> {
-    let low = values.iter().copied().fold(f64::INFINITY, f64::min);
-    let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let [low, high] = span(&values);
     values.iter().map(|value| (value - low) / (high - low)).collect()
 }
 

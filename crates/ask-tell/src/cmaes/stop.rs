@@ -1,6 +1,6 @@
 //! Termination criteria on objective values: appendix B.3 of the tutorial.
 
-use crate::statistics::median;
+use crate::statistics::{median, span};
 
 /// Termination tolerances of a run; the defaults are pycma's. Names as in the tutorial.
 #[derive(Debug, Clone, PartialEq)]
@@ -75,8 +75,7 @@ impl History {
 
 /// Returns the largest minus the smallest value; 0 if all are the same infinity.
 fn range(values: &[f64]) -> f64 {
-    let low = values.iter().copied().fold(f64::INFINITY, f64::min);
-    let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let [low, high] = span(values);
     if low == high { 0.0 } else { high - low }
 }
 

@@ -5,6 +5,7 @@ use super::check::{Remark, Remarks};
 use super::curves::Curves;
 use super::formulas::{Friction, explained};
 use super::log::{LogSample, Run};
+use ask_tell::statistics::weighted_mean;
 use input::units::MM;
 use insertion::task::{Stage, Task};
 use nalgebra::{Vector2, Vector3};
@@ -61,9 +62,8 @@ struct Comparison {
 
 impl Comparison {
     fn new(mistakes: impl IntoIterator<Item = Mistake>, pairs: &[Pair]) -> Self {
-        let all: f64 = pairs.iter().map(|(.., weight)| weight).sum();
         let mean = |difference: &dyn Fn(&Pair) -> Vector3<f64>| {
-            pairs.iter().map(|pair| pair.2 * difference(pair).lp_norm(1)).sum::<f64>() / all
+            weighted_mean(pairs.iter().map(|pair| (difference(pair).lp_norm(1), pair.2)))
         };
         let distance = mean(&|(is, expected, _)| is - expected);
         let tried = mistakes.into_iter().map(|(cause, corrected)| {

@@ -144,9 +144,9 @@ fn pose(remarks: &mut Remarks<'_>, run: &Run, task: &Task) {
     if far > MAX_START_DISTANCE {
         let text = format!(
             "it begins at ({}) mm, {:.0} mm from the start of the task and offset, ({}) mm: {}",
-            formatted(first.tcp.position / MM, 1),
+            formatted(first.tcp.position / MM),
             far / MM,
-            formatted(start / MM, 1),
+            formatted(start / MM),
             cause(first.tcp.position, start)
         );
         remarks.add(!probe, Some([0, 0]), text);
@@ -233,7 +233,7 @@ fn contact(remarks: &mut Remarks<'_>) -> Option<usize> {
     let text = format!(
         "at the touch the force on the tool becomes ({}) N: while the tool moves down it must be \
          above 0 along z; invert `force_sign`",
-        formatted(force, 1)
+        formatted(force)
     );
     remarks.add(true, Some([from, to]), text);
     None
@@ -249,7 +249,7 @@ fn sensor(remarks: &mut Remarks<'_>, touched: Option<usize>) {
         let text = format!(
             "the force in the air is ({}) N instead of zero; it is subtracted: zero the sensor before \
              an attempt, or give the tool's weight",
-            formatted(bias, 1)
+            formatted(bias)
         );
         remarks.add(false, span, text);
     }
@@ -257,7 +257,7 @@ fn sensor(remarks: &mut Remarks<'_>, touched: Option<usize>) {
     if touched.is_some() && slope.norm() > MAX_DRIFT.1.max(4.0 * error.norm()) {
         let text = format!(
             "the force in the air changes by ({}) N/s: the sensor drifts, or the tool accelerates",
-            formatted(slope, 1)
+            formatted(slope)
         );
         remarks.add(false, span, text);
     }
@@ -314,7 +314,7 @@ fn phases(remarks: &mut Remarks<'_>, run: &Run, task: &Task, touched: usize) {
     }
 }
 
-fn formatted(vector: Vector3<f64>, decimals: usize) -> String {
-    let numbers: Vec<String> = vector.iter().map(|v| format!("{:.decimals$}", v + 0.0)).collect();
+fn formatted(vector: Vector3<f64>) -> String {
+    let numbers: Vec<String> = vector.iter().map(|v| format!("{:.1}", v + 0.0)).collect();
     numbers.join(", ")
 }

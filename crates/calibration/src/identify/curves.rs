@@ -2,11 +2,11 @@
 
 use super::log::{Log, LogSample};
 use input::units::{DEG, MM};
+/// Time between two points, s.
+pub use insertion::trial::LOG_STEP_S as STEP_S;
 use insertion::trial::{Sample, Tcp, Trajectory};
 use nalgebra::{UnitQuaternion, Vector3};
 
-/// Time between two points, s: 500 Hz.
-pub const STEP_S: f64 = 2e-3;
 /// Number of points on either side from which derivatives are computed.
 pub const REACH: usize = 2;
 /// Reduction of the target's speed from one point to the next, as a fraction of its maximum, that counts as a stop.

@@ -1,6 +1,7 @@
 //! Robot with the stiffness identified from the logs.
 
 use super::formulas::Flange;
+use ask_tell::statistics::weighted_mean;
 use input::units::N_PER_MM;
 use insertion::robot::{Drive, Robot, Servo};
 
@@ -32,16 +33,11 @@ pub fn identified_robot(own: &Robot, flange: &[Option<Flange>; 3]) -> (Robot, Op
     };
     let axes = [0, 1, 2].map(axis);
     let weight = |sd: f64| 1.0 / (sd * sd + AXIS_SD * AXIS_SD);
-    let sums = axes
-        .iter()
-        .flatten()
-        .fold((0.0, 0.0), |(sum, all), (log, sd)| (sum + weight(*sd) * log, all + weight(*sd)));
-    let common = sums.0 / sums.1;
+    let common = weighted_mean(axes.iter().flatten().map(|(log, sd)| (*log, weight(*sd))));
     let each = axes.map(|axis| match axis {
         None => common,
         Some((log, sd)) => {
-            let (own, others) = (1.0 / (sd * sd), 1.0 / (AXIS_SD * AXIS_SD));
-            (own * log + others * common) / (own + others)
+            weighted_mean([(log, 1.0 / (sd * sd)), (common, 1.0 / (AXIS_SD * AXIS_SD))])
         }
     });
     let sd = axes.iter().flatten().map(|(_, sd)| *sd).fold(f64::INFINITY, f64::min);

@@ -54,10 +54,10 @@ pub struct Log {
     pub samples: Vec<LogSample>,
 }
 
-/// Log with its line of the table of runs.
+/// Line of the table of runs with its log, or with the file name of the log before that is read.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Run {
-    pub log: Log,
+pub struct Run<L = Log> {
+    pub log: L,
     /// Infill of the finger, and other design parameters of the table.
     pub design: Design,
     /// Shift of the start along y, m; 0 for a probe that has none.

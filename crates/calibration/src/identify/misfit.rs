@@ -1,6 +1,8 @@
 //! Misfit of the simulated curves, per phase of an attempt, and validation by a held-out attempt.
 
+use super::curves::Curves;
 use super::question::{Compared, Identified};
+use super::replay::Logged;
 use ask_tell::statistics::mean;
 use input::units::MM;
 use serde::Serialize;
@@ -72,25 +74,21 @@ pub fn misfits(compared: &[Compared]) -> Vec<Misfit> {
     let axes = |phase| FORCES.into_iter().enumerate().map(move |axis| (phase, axis));
     let each = ["search", "push"].into_iter().flat_map(axes);
     each.map(|(phase, (axis, force))| {
-        let mut sums = [(0.0, 0.0); 2];
-        for one in compared {
-            let data = one.logged.data();
-            for (sum, replayed) in sums.iter_mut().zip([&one.before.0, &one.after.0]) {
-                let predicted = one.logged.predicted(replayed);
-                let all = data.iter().zip(predicted).zip(one.logged.phases()).enumerate();
-                for (i, ((datum, predicted), of)) in all {
-                    if of == phase
-                        && i % one.logged.data_per_bin() == axis
-                        && let Some(predicted) = predicted
-                    {
-                        sum.0 += ((datum.value - predicted) / datum.sd).powi(2);
-                        sum.1 += 1.0;
-                    }
-                }
-            }
-        }
-        let [before, after] = sums.map(|(squares, count)| (squares / f64::max(count, 1.0)).sqrt());
+        let misfit = |replayed: fn(&Compared) -> &Curves| {
+            let squares = |one: &Compared| squares(&one.logged, replayed(one), phase, axis);
+            mean(compared.iter().flat_map(squares)).map_or(0.0, f64::sqrt)
+        };
+        let (before, after) = (misfit(|one| &one.before.0), misfit(|one| &one.after.0));
         Misfit { phase, axis: force, before, after }
     })
     .collect()
+}
+
+/// Returns the squared residuals of a component of the force in a phase, in standard deviations of the data.
+fn squares(logged: &Logged, replayed: &Curves, phase: &str, axis: usize) -> Vec<f64> {
+    let data = logged.data().into_iter().zip(logged.predicted(replayed)).zip(logged.phases());
+    let own = data.skip(axis).step_by(logged.data_per_bin()).filter(|(_, of)| *of == phase);
+    let residuals =
+        own.filter_map(|((datum, predicted), _)| Some((datum.value - predicted?) / datum.sd));
+    residuals.map(|residual| residual.powi(2)).collect()
 }

@@ -179,8 +179,7 @@ impl<'a> Table<'a> {
         let numbers = |places: &[usize]| places.iter().map(number).collect::<Result<Vec<f64>, _>>();
         let (numbers, goal) = (numbers(&self.places)?, numbers(&self.targets)?);
         let force = &numbers[numbers.len() - 3..];
-        if let Some(large) = force.iter().find(|force| force.abs() > LARGEST_FORCE_N) {
-            let large = shown(*large);
+        if let Some(large) = exceeding(force, LARGEST_FORCE_N) {
             return Err(format!("a force of {large} looks like millinewtons; give newtons"));
         }
         let vector = Vector3::from_column_slice;
@@ -191,10 +190,9 @@ impl<'a> Table<'a> {
                 (tcp, target, frame.force_of_base(vector(force)))
             }
             None => {
-                let of = |place: &[f64]| match place.iter().find(|mm| mm.abs() > MAX_REACH / MM) {
-                    Some(mm) => Err(format!(
-                        "a coordinate of {} looks like micrometres; give millimetres",
-                        shown(*mm)
+                let of = |place: &[f64]| match exceeding(place, MAX_REACH / MM) {
+                    Some(far) => Err(format!(
+                        "a coordinate of {far} looks like micrometres; give millimetres"
                     )),
                     None => Ok(vector(place) * MM),
                 };
@@ -212,15 +210,18 @@ impl<'a> Table<'a> {
     }
 }
 
+/// Formats the first of some values whose magnitude exceeds a limit.
+fn exceeding(values: &[f64], limit: f64) -> Option<String> {
+    values.iter().find(|value| value.abs() > limit).map(|value| shown(*value))
+}
+
 /// Converts a pose, position (m) and axis-angle (rad), from the base's to the task's frame.
 fn of_base(frame: &Frame, pose: &[f64]) -> Result<Tcp, String> {
     let (place, turn) = pose.split_at(3);
-    if let Some(far) = place.iter().find(|m| m.abs() > MAX_REACH) {
-        let far = shown(*far);
+    if let Some(far) = exceeding(place, MAX_REACH) {
         return Err(format!("a position of {far} looks like millimetres; RTDE records metres"));
     }
-    if let Some(large) = turn.iter().find(|rad| rad.abs() > TAU + 1e-3) {
-        let large = shown(*large);
+    if let Some(large) = exceeding(turn, TAU + 1e-3) {
         return Err(format!(
             "a turn of {large} looks like degrees; RTDE records axis-angle in rad"
         ));

@@ -165,7 +165,7 @@ impl Identification<'_> {
             let rig = evaluator.rig(&scenario, None, step_factor)?;
             let grasp = Grasp { stop: self.stop, ..Grasp::of(&scenario.finger) };
             let trajectories: Vec<_> = alike.iter().map(|logged| &logged.trajectory).collect();
-            let followed = rig.follow(grasp, &trajectories, STEP_S);
+            let followed = rig.follow(grasp, &trajectories);
             all.extend(followed.into_iter().map(|(trial, samples)| {
                 (Curves::of_samples(&samples, self.tool_mass), trial.outcome)
             }));

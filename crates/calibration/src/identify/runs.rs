@@ -9,7 +9,7 @@ use input::files::{self, LARGEST_INPUT};
 use input::units::MM;
 use input::{InputError, Place};
 use insertion::outcome::Outcome;
-use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design};
+use insertion::space::{DENSITY_KEY, DIRECTION_KEY};
 use std::path::Path;
 
 /// Columns of the table; further ones are keys of a space file.
@@ -18,17 +18,8 @@ pub const COLUMNS: [&str; 7] =
 /// Largest total number of samples of all logs: 0.2 GB in memory.
 const MAX_SAMPLES: usize = 2_000_000;
 
-/// Line of the table.
-struct RunLine {
-    log: String,
-    design: Design,
-    offset_mm: f64,
-    outcome: Option<Outcome>,
-    line: u64,
-}
-
 /// Parses a line; problems are recorded in `cells`.
-fn run_line(cells: &mut Cells<'_>, before: &[RunLine]) -> RunLine {
+fn run_line(cells: &mut Cells<'_>, before: &[Run<String>]) -> Run<String> {
     let log = cells.text("log").to_owned();
     match before.iter().find(|old| old.log == log) {
         _ if log.is_empty() => cells.problem("log", "is empty; name the file of the log"),
@@ -43,8 +34,8 @@ fn run_line(cells: &mut Cells<'_>, before: &[RunLine]) -> RunLine {
         None => cells.optional("offset_mm", length),
         Some(_) => cells.read("offset_mm", length),
     };
-    let (design, line) = (cells.design(), cells.line);
-    RunLine { log, design, offset_mm: offset_mm.unwrap_or(0.0), outcome, line }
+    let (design, line) = (cells.design(), cells.line as usize);
+    Run { log, design, offset: offset_mm.unwrap_or(0.0) * MM, outcome, line }
 }
 
 /// Parses the outcome of an attempt; `None` for a probe.
@@ -80,7 +71,7 @@ pub fn read(
     }
     let folder = path.parent().unwrap_or(Path::new(""));
     let (mut runs, mut samples) = (Vec::new(), 0);
-    for RunLine { log, design, offset_mm, outcome, line } in table {
+    for Run { log, design, offset, outcome, line } in table {
         let log = folder.join(log);
         let log: Log = read::parse(&text_of(&log)?, &log.display().to_string(), frame)?;
         samples += log.samples.len();
@@ -88,9 +79,9 @@ pub fn read(
             let words = format!(
                 "the logs up to this line have more than {MAX_SAMPLES} samples; cut them to the attempts"
             );
-            return Err(Place::file(file).line(line as usize).key("log").fault(words).into());
+            return Err(Place::file(file).line(line).key("log").fault(words).into());
         }
-        runs.push(Run { log, design, offset: offset_mm * MM, outcome, line: line as usize });
+        runs.push(Run { log, design, offset, outcome, line });
     }
     Ok(runs)
 }

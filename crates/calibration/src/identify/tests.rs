@@ -258,7 +258,7 @@ fn an_attempt_along_its_own_path_is_the_same_attempt() {
         let trajectory = measured.trajectory().unwrap();
         let push = trajectory.push_start();
         assert!(push > 0.1 && push < trajectory.duration(), "{push}");
-        let mut followed = rig.follow(Grasp::of(&finger), &[&trajectory], STEP_S);
+        let mut followed = rig.follow(Grasp::of(&finger), &[&trajectory]);
         let (again, samples) = followed.remove(0);
         assert_eq!(again.outcome, trial.outcome);
         let replayed = Curves::of_samples(&samples, 0.0);

@@ -1,6 +1,7 @@
 //! Closing of gaps in a surface: in files, common corners can differ by rounding, and a corner can lie in the middle
 //! of a neighbour's edge.
 
+use super::edges;
 use input::units::MM;
 use nalgebra::Point3;
 use std::collections::{BTreeMap, BTreeSet};
@@ -57,15 +58,14 @@ pub fn mend(points: &[Point3<f64>], faces: &mut Vec<[usize; 3]>) -> bool {
 
 /// Returns the open edges, those with an odd number of faces, each with the last of its faces.
 fn open_edges(faces: &[[usize; 3]]) -> BTreeMap<[usize; 2], usize> {
-    let mut edges: BTreeMap<[usize; 2], (usize, usize)> = BTreeMap::new();
+    let mut found: BTreeMap<[usize; 2], (usize, usize)> = BTreeMap::new();
     for (number, face) in faces.iter().enumerate() {
-        for i in 0..3 {
-            let (a, b) = (face[i], face[(i + 1) % 3]);
-            let edge = edges.entry([a.min(b), a.max(b)]).or_default();
+        for [a, b] in edges(*face) {
+            let edge = found.entry([a.min(b), a.max(b)]).or_default();
             *edge = (edge.0 + 1, number);
         }
     }
-    let odd = edges.into_iter().filter(|(_, (count, _))| count % 2 == 1);
+    let odd = found.into_iter().filter(|(_, (count, _))| count % 2 == 1);
     odd.map(|(edge, (_, face))| (edge, face)).collect()
 }
 

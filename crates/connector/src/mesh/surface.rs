@@ -1,7 +1,7 @@
 //! Closed triangle meshes with outward normals.
 
-use super::mend;
 use super::read::Triangle;
+use super::{edges, mend};
 use input::units::MM;
 use insertion::task::geometry::surface_moments;
 use nalgebra::Point3;
@@ -100,11 +100,8 @@ fn without_films(faces: Vec<[usize; 3]>) -> Vec<[usize; 3]> {
 /// Returns whether every edge runs as often in one direction as in the other.
 fn closed(faces: &[[usize; 3]]) -> bool {
     let mut ways: BTreeMap<[usize; 2], i32> = BTreeMap::new();
-    for face in faces {
-        for i in 0..3 {
-            let (a, b) = (face[i], face[(i + 1) % 3]);
-            *ways.entry([a.min(b), a.max(b)]).or_default() += if a < b { 1 } else { -1 };
-        }
+    for [a, b] in faces.iter().copied().flat_map(edges) {
+        *ways.entry([a.min(b), a.max(b)]).or_default() += if a < b { 1 } else { -1 };
     }
     ways.values().all(|&way| way == 0)
 }

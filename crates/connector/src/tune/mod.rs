@@ -3,7 +3,7 @@
 mod tuner;
 mod variables;
 
-pub use tuner::{Candidate, ENOUGH_MM, MeasuredWindow, Tuner};
+pub use tuner::{Candidate, ENOUGH_MM, Tuner};
 
 use crate::body::ConvexBody;
 use crate::plan::{Family, has_core};

@@ -2,11 +2,11 @@
 
 use input::units::MM;
 use insertion::evaluation::tolerance::{self, Search, offset};
-use insertion::evaluation::{Window, taught::teach};
+use insertion::evaluation::{Evaluation, Window, taught::teach};
 use insertion::finger::Finger;
 use insertion::outcome::Outcome;
 use insertion::robot::Robot;
-use insertion::stiffness::designs;
+use insertion::stiffness::{Measurement, designs_by_rank};
 use insertion::task::{Limits, StartRule, Strategy, Task};
 use insertion::trial::engine::EngineKind;
 use insertion::trial::run::RigError;
@@ -38,16 +38,6 @@ pub struct Tuner<'a> {
     pub stop: &'a AtomicBool,
 }
 
-/// Window of a finger.
-pub struct MeasuredWindow {
-    /// The window.
-    pub window: Window,
-    /// Margin of the nominal start, as of a [`Trial`] but at most 0: 0 if it inserts, -1 to 0 if it fails.
-    pub margin: f64,
-    /// Largest force of the insertions, N.
-    pub force_n: f64,
-}
-
 /// Tried strategy with its result.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Candidate {
@@ -66,27 +56,15 @@ pub struct Candidate {
     pub cost: usize,
 }
 
-/// Returns six of the measured fingers, by their rank in stiffness: soft, medium and stiff, and three others between
-/// them.
-pub fn fingers() -> [Finger; 6] {
-    let mut designs = designs();
-    designs.sort_by(|a, b| a.compliance.total_cmp(&b.compliance));
-    // A shipped file has designs.
-    let last = designs.len() - 1;
-    let at = |tenths: usize| {
-        let design = &designs[last * tenths / 10];
-        Finger::new(design.compliance, design.assembly)
-    };
-    [0, 5, 10, 2, 4, 8].map(at)
-}
-
 impl<'a> Tuner<'a> {
     /// Creates the tuner of a task with its limits of force and speed, and with the robot's stop force unless the
     /// task limits the force.
     pub fn new(task: &'a Task, robot: &'a Robot, engine: EngineKind, stop: &'a AtomicBool) -> Self {
-        let [soft, medium, stiff, others @ ..] =
-            fingers().map(|finger| finger.with_model(&task.finger, 0.0));
-        let fingers = [soft, medium, stiff];
+        let finger = |design: Measurement| {
+            Finger::new(design.compliance, design.assembly).with_model(&task.finger, 0.0)
+        };
+        let fingers = designs_by_rank([0, 5, 10]).map(finger);
+        let others = designs_by_rank([2, 4, 8]).map(finger);
         let force = task.limits.force.or(Some(robot.stop_force));
         let limits = Limits { force, ..task.limits };
         Tuner { task, robot, engine, fingers, others, limits, stop }
@@ -103,15 +81,12 @@ impl<'a> Tuner<'a> {
         strategy: &Strategy,
         fingers: &[Finger],
         conditions: Conditions,
-    ) -> Result<Vec<MeasuredWindow>, RigError> {
+    ) -> Result<Vec<Evaluation>, RigError> {
         let task = Task { strategy: strategy.clone(), ..self.task.clone() };
         let measured = |finger: &Finger| {
             let rig = self.engine.rig(&task, self.robot, finger, 1.0)?;
             let grasp = Grasp { finger: *finger, conditions, stop: self.stop };
-            let found = tolerance::evaluate_grasp(&*rig, grasp, Search::Strides);
-            let inserts = found.window.nominal == Outcome::Inserted;
-            let margin = if inserts { 0.0 } else { found.end_shares[0].min(0.0) };
-            Ok(MeasuredWindow { window: found.window, margin, force_n: found.peak_force_n })
+            Ok(tolerance::evaluate_grasp(&*rig, grasp, Search::Strides))
         };
         fingers.par_iter().map(measured).collect()
     }
@@ -134,8 +109,7 @@ impl<'a> Tuner<'a> {
             Ok(taught) => {
                 strategy.start[1] += offset(taught.shift);
                 let mut found = self.windows(&strategy, &[soft, stiff], Conditions::NOMINAL)?;
-                let (window, force_n) = (taught.window, taught.peak_force_n);
-                found.insert(1, MeasuredWindow { window, margin: 0.0, force_n });
+                found.insert(1, taught.evaluation);
                 Ok(self.tried(strategy, found))
             }
             Err(nearest) => {
@@ -167,16 +141,17 @@ impl<'a> Tuner<'a> {
     }
 
     /// Scores a strategy by the windows of the three fingers.
-    fn tried(&self, strategy: Strategy, found: Vec<MeasuredWindow>) -> Candidate {
-        let worst = found.iter().map(|found| found.margin).fold(0.0, f64::min);
-        let force_n = found.iter().map(|found| found.force_n).fold(0.0, f64::max);
-        let inserts = found.iter().all(|found| found.window.nominal == Outcome::Inserted);
+    fn tried(&self, strategy: Strategy, found: Vec<Evaluation>) -> Candidate {
+        let failed = found.iter().filter(|found| found.window.nominal != Outcome::Inserted);
+        // If the nominal start fails, the share is its margin.
+        let worst = failed.map(|found| found.end_shares[0]).reduce(f64::min);
+        let force_n = found.iter().map(|found| found.peak_force_n).fold(0.0, f64::max);
         let windows: Vec<_> = found.into_iter().map(|found| found.window).collect();
         let least = windows.iter().map(Window::range_mm).fold(f64::INFINITY, f64::min);
-        let score = match self.limits.force {
+        let score = match (worst, self.limits.force) {
             // A nominal start that fails with a margin of 0 is not a success, either.
-            _ if !inserts => worst - f64::EPSILON,
-            Some(limit) if force_n > limit => 1.0 - force_n / limit,
+            (Some(worst), _) => worst.min(0.0) - f64::EPSILON,
+            (None, Some(limit)) if force_n > limit => 1.0 - force_n / limit,
             _ => least,
         };
         Candidate { strategy, cost: windows.len(), windows, force_n, score, nearest: None }

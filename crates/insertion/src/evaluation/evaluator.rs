@@ -86,8 +86,8 @@ impl Scenario {
     pub fn centre_source(&self) -> CentreSource {
         match (self.design.get(RCC_KEY), self.task.finger.rcc) {
             (Some(_), _) => CentreSource::Design,
-            (None, Some(_)) => CentreSource::TaskFile,
-            (None, None) => CentreSource::Model,
+            (None, Some(_)) => CentreSource::Task,
+            (None, None) => CentreSource::FingerModel,
         }
     }
 }

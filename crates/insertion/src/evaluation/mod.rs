@@ -105,7 +105,6 @@ pub struct Evaluation {
     /// Position of the outcome change in the grid step beyond each end (negative, positive), as a share of the step,
     /// 0 to 1, interpolated over [`Trial::margin`](crate::trial::Trial::margin). If the nominal start fails, both are
     /// its margin, -1 to 0.
-    #[serde(serialize_with = "schema::finite")]
     pub end_shares: [f64; 2],
     /// Shift of the taught start from the start in the task file, in grid steps; `None` without a taught start.
     #[serde(rename = "taught_start_mm", default, skip_serializing_if = "Option::is_none")]

@@ -71,11 +71,6 @@ pub(super) fn taught_steps<'de, D: Deserializer<'de>>(
     Ok(Option::deserialize(from)?.map(steps))
 }
 
-/// Serializes [`Evaluation::end_shares`](super::Evaluation::end_shares), NaN as 0, since JSON has no NaN.
-pub(super) fn finite<S: Serializer>(shares: &[f64; 2], to: S) -> Result<S::Ok, S::Error> {
-    shares.map(|share| if share.is_finite() { share } else { 0.0 }).serialize(to)
-}
-
 /// Success rate and its interval, and the counts from which they are computed.
 #[derive(Serialize)]
 struct SuccessRow<'a> {
@@ -110,8 +105,8 @@ pub(super) fn with_rate<S: Serializer>(
 #[derive(Serialize)]
 struct RobustRow<'a> {
     robust_range_mm: Option<f64>,
-    robust_mean_mm: Option<f64>,
-    robust_sd_mm: Option<f64>,
+    robust_mean_mm: f64,
+    robust_sd_mm: f64,
     robust_windows: usize,
     #[serde(flatten)]
     ranges: &'a RobustRange,
@@ -122,11 +117,10 @@ pub(super) fn with_spread<S: Serializer>(
     robust: &Option<RobustRange>,
     to: S,
 ) -> Result<S::Ok, S::Error> {
-    let finite = |value: f64| Some(value).filter(|value| value.is_finite());
     let row = robust.as_ref().map(|ranges| RobustRow {
         robust_range_mm: ranges.value_mm,
-        robust_mean_mm: finite(ranges.mean_mm()),
-        robust_sd_mm: finite(ranges.sd_mm()),
+        robust_mean_mm: ranges.mean_mm(),
+        robust_sd_mm: ranges.sd_mm(),
         robust_windows: ranges.ranges_mm.len(),
         ranges,
     });

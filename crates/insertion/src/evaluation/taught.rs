@@ -5,7 +5,7 @@
 //! does not insert, because the window has a gap, the first start that inserts is used.
 
 use super::tolerance::{self, OFFSET_LIMIT_STEPS, Search, offset};
-use super::{Evaluation, OffsetStep, Window};
+use super::{Evaluation, OffsetStep};
 use crate::finger::Finger;
 use crate::outcome::Outcome;
 use crate::trial::{Followed, Grasp, Grasped, Recording, Rig, Trial};
@@ -22,10 +22,8 @@ const MAX_SHIFT: OffsetStep = 100;
 pub struct TaughtStart {
     /// Shift of the start, in grid steps.
     pub shift: OffsetStep,
-    /// Tolerance window around the taught start.
-    pub window: Window,
-    /// Largest contact force over the inserted trials of the window search, N.
-    pub peak_force_n: f64,
+    /// Search for the window around the first start that inserts; the window is relative to the taught start.
+    pub evaluation: Evaluation,
 }
 
 /// Failing start with the largest margin, if no start inserts.
@@ -46,8 +44,8 @@ pub fn teach(rig: &dyn Rig, finger: &Finger, stop: &AtomicBool) -> Result<Taught
     let grasped = rig.grasp(grasp);
     let shift = first_inserting(&*grasped)?;
     let moved = Shifted { rig, shift };
-    let Evaluation { mut window, peak_force_n, .. } =
-        tolerance::evaluate_grasp(&moved, grasp, Search::Strides);
+    let mut evaluation = tolerance::evaluate_grasp(&moved, grasp, Search::Strides);
+    let window = &mut evaluation.window;
     let sum = window.negative_steps + window.positive_steps;
     // The division rounds towards zero.
     let middle = sum.clamp(-OFFSET_LIMIT_STEPS, OFFSET_LIMIT_STEPS) / 2;
@@ -55,7 +53,7 @@ pub fn teach(rig: &dyn Rig, finger: &Finger, stop: &AtomicBool) -> Result<Taught
     let middle = if inserts { middle } else { 0 };
     window.negative_steps -= middle;
     window.positive_steps -= middle;
-    Ok(TaughtStart { shift: shift + middle, window, peak_force_n })
+    Ok(TaughtStart { shift: shift + middle, evaluation })
 }
 
 /// Returns the first start that inserts, searching outward from the start in the task file.
@@ -115,13 +113,12 @@ mod tests {
         let fake = FakeRig::default();
         for (away, taught) in [(0, -9), (30, -39), (-50, 41)] {
             let moved = Shifted { rig: &fake as &dyn Rig, shift: away };
-            let TaughtStart { shift: found, window: returned, .. } =
-                teach(&moved, &finger, &NEVER).unwrap();
+            let TaughtStart { shift: found, evaluation } = teach(&moved, &finger, &NEVER).unwrap();
             assert!((found - taught).abs() <= 1, "{away}: {found}");
             let centred = Shifted { rig: &moved as &dyn Rig, shift: found };
             let window = tolerance::evaluate(&centred, &finger, Search::Walk).window;
             assert_eq!(window.range_mm(), 4.7);
-            assert_eq!(returned, window);
+            assert_eq!(evaluation.window, window);
             assert!((window.negative_steps + window.positive_steps).abs() <= 2, "{window:?}");
         }
         let far = Shifted { rig: &fake as &dyn Rig, shift: 200 };

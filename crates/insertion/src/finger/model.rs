@@ -50,12 +50,13 @@ pub struct ComputedFingers {
 }
 
 /// Source of a finger's remote centre.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum CentreSource {
     /// Finger model.
-    Model,
+    FingerModel,
     /// `rcc_mm` of the task file.
-    TaskFile,
+    Task,
     /// [`RCC_KEY`] of the design.
     Design,
 }

@@ -48,8 +48,9 @@ impl ComputedStiffness {
     }
 }
 
-/// Standard deviation of ln(measured / computed) over the eleven shipped designs; prior for other materials.
-pub(super) const SCATTER: [(Axis, f64); 2] = [(Axis::Compliance, 0.17), (Axis::Assembly, 0.30)];
+/// Standard deviation of ln(measured / computed) over the eleven shipped designs along each of [`Axis::ALL`]; prior for
+/// other materials.
+pub(super) const SCATTER: [f64; 2] = [0.30, 0.17];
 /// Degrees of freedom of that standard deviation.
 pub(super) const DEGREES_OF_FREEDOM: f64 = 10.0;
 
@@ -68,7 +69,7 @@ pub(super) struct LognormalRatio {
 pub(super) fn fit(axis: Axis, ratios: &Samples) -> Option<LognormalRatio> {
     let logs = ratios.targets().mapv(libm::log);
     let log = logs.mean()?;
-    let (_, scatter) = SCATTER.into_iter().find(|(of, _)| *of == axis)?;
+    let scatter = SCATTER[axis as usize];
     let count = logs.len() as f64;
     let squares =
         logs.mapv(|each| (each - log).powi(2)).sum() + DEGREES_OF_FREEDOM * scatter * scatter;

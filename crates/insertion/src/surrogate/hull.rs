@@ -2,6 +2,7 @@
 
 use crate::stiffness::Infill;
 use crate::task::geometry::convex_outline;
+use ask_tell::statistics::span;
 use finray::polygon::edges;
 use nalgebra::Point2;
 
@@ -21,15 +22,9 @@ const TOLERANCE: f64 = 1e-9;
 
 impl Hull {
     pub fn new(points: &[Infill]) -> Self {
-        let bound = |axis: usize, pick: fn(f64, f64) -> f64| {
-            points.iter().map(|p| p[axis]).reduce(pick).unwrap_or(0.0)
-        };
-        let origin = [bound(0, f64::min), bound(1, f64::min)];
-        let width = |axis: usize| match bound(axis, f64::max) - origin[axis] {
-            0.0 => 1.0,
-            span => span,
-        };
-        let span = [width(0), width(1)];
+        let ranges = [0, 1].map(|axis| span(points.iter().map(|p| p[axis])));
+        let origin = ranges.map(|[low, _]| low);
+        let span = ranges.map(|[low, high]| if high > low { high - low } else { 1.0 });
         let mut hull = Hull { origin, span, corners: Vec::new() };
         hull.corners = convex_outline(points.iter().map(|&p| hull.scale(p)).collect());
         hull

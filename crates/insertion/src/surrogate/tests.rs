@@ -232,7 +232,7 @@ fn a_density_that_cannot_be_printed_is_named() {
 /// The scatter assumed for another material is that of the shipped fingers.
 #[test]
 fn the_assumed_scatter_is_that_of_the_shipped_fingers() {
-    for (axis, assumed) in super::computed::SCATTER {
+    for (axis, assumed) in Axis::ALL.into_iter().zip(super::computed::SCATTER) {
         let shipped = shipped();
         let log = |m: &Measurement| {
             libm::log(m.stiffness(axis) / computed().stiffness(axis, m.infill()).unwrap())

@@ -128,15 +128,15 @@ impl Solid {
                 let size = max - min;
                 let volume = size.product();
                 let second = size.component_mul(&size) * (volume / 12.0);
-                (volume, (max + min) / 2.0, Matrix3::from_diagonal(&second))
+                (volume, self.shape().1, Matrix3::from_diagonal(&second))
             }
-            Solid::Cylinder { centre, radius, z } => {
+            Solid::Cylinder { radius, z, .. } => {
                 let height = z[1] - z[0];
                 let volume = std::f64::consts::PI * radius * radius * height;
                 let across = volume * radius * radius / 4.0;
                 let along = volume * height * height / 12.0;
-                let middle = Vector3::new(centre[0], centre[1], (z[0] + z[1]) / 2.0);
-                (volume, middle, Matrix3::from_diagonal(&Vector3::new(across, across, along)))
+                let second = Vector3::new(across, across, along);
+                (volume, self.shape().1, Matrix3::from_diagonal(&second))
             }
             Solid::Prism { axis, outline, span } => prism_moments(*axis, outline, *span),
             Solid::Hull { .. } | Solid::Rounded(_) => {

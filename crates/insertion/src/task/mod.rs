@@ -21,7 +21,7 @@ pub use rounded::Rounded;
 use crate::task::finger::FingerModel;
 use input::units::read::{deg, mm};
 use nalgebra::{Vector2, Vector3};
-use serde::{Deserialize, Deserializer};
+use serde::Deserialize;
 
 /// A checked task, in SI units, in the task frame: origin at the centre of the socket's opening on
 /// its top, z out of the socket, y the direction in which the jaws close and the start is shifted.
@@ -155,21 +155,13 @@ pub struct Friction {
 
 /// Torsional friction of a pad about its normal.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
-#[serde(untagged, expecting = "a number of mm, or \"patch\"")]
+#[serde(rename_all = "kebab-case", expecting = "a number of mm, or \"patch\"")]
 pub enum PadTorsion {
-    /// Moment per unit of normal force at each contact point, m; the friction forces at the points add to it.
-    Points(#[serde(deserialize_with = "mm")] f64),
     /// Friction of the contact patch only.
-    #[serde(deserialize_with = "patch")]
     Patch,
-}
-
-/// Reads the word "patch".
-fn patch<'de, D: Deserializer<'de>>(from: D) -> Result<(), D::Error> {
-    match &*String::deserialize(from)? {
-        "patch" => Ok(()),
-        other => Err(serde::de::Error::custom(other)),
-    }
+    /// Moment per unit of normal force at each contact point, m; the friction forces at the points add to it.
+    #[serde(untagged)]
+    Points(#[serde(deserialize_with = "mm")] f64),
 }
 
 /// Search strategy: start and moves.

@@ -22,11 +22,11 @@ pub mod picture;
 pub mod record;
 pub mod run;
 
-pub use attempt::commanded::{Probe, Trajectory};
+pub use attempt::commanded::{PROBE_FORCE, PROBE_SLIDES, PROBE_SPEED, PROBE_STROKE, Trajectory};
 pub use attempt::driven::{Driven, State};
 pub use conditions::Conditions;
 pub use motion::Tcp;
-pub use record::{Recording, Sample};
+pub use record::{LOG_STEP_S, Recording, Sample};
 
 /// State at the end of one phase of a trial.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -133,15 +133,15 @@ pub trait Rig: Send + Sync {
         None
     }
 
-    /// Returns the trials along commanded trajectories (task frame) from the same grasp, in place of the strategy,
-    /// sampled every `every_s` seconds; empty if the rig does not simulate.
-    fn follow(&self, _grasp: Grasp<'_>, _each: &[&Trajectory], _every_s: f64) -> Vec<Followed> {
+    /// Returns the trials along commanded trajectories (task frame) from the same grasp, in place of the strategy, with
+    /// the samples that a robot logs; empty if the rig does not simulate.
+    fn follow(&self, _grasp: Grasp<'_>, _each: &[&Trajectory]) -> Vec<Followed> {
         Vec::new()
     }
 
-    /// Returns the trial of a friction probe on a flat plate that replaces the socket, with its top at z = 0, sampled
-    /// every `every_s` seconds; `None` if the rig does not simulate.
-    fn probe(&self, _grasp: Grasp<'_>, _probe: &Probe, _every_s: f64) -> Option<Followed> {
+    /// Returns the trial of a friction probe on a flat plate that replaces the socket, with its top at z = 0, with the
+    /// samples that a robot logs; `None` if the rig does not simulate.
+    fn probe(&self, _grasp: Grasp<'_>) -> Option<Followed> {
         None
     }
 
@@ -161,8 +161,8 @@ pub trait Grasped: Send + Sync {
     fn run(&self, offset: f64, every_s: Option<f64>, rest_s: f64) -> Followed;
 
     /// Returns the trial with the samples that a robot logs if it zeroes its sensor before the search.
-    fn logged(&self, offset: f64, every_s: f64) -> Followed {
-        self.run(offset, Some(every_s), ZEROING_S)
+    fn logged(&self, offset: f64) -> Followed {
+        self.run(offset, Some(LOG_STEP_S), ZEROING_S)
     }
 
     /// Returns the trial alone.

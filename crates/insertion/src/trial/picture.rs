@@ -3,9 +3,9 @@
 
 use super::{PhaseEnd, Trial};
 use crate::finger::Pad;
-use crate::outcome::Outcome;
 use crate::task::geometry::convex_outline;
 use crate::task::{Part, Task};
+use ask_tell::statistics::span;
 use contact::ContactPoint;
 use contact::scene::{Geom, Pose};
 use drawing::{Drawing, Font, Style, View};
@@ -87,13 +87,9 @@ pub fn final_state(task: &Task, pad: &Pad, trial: &Trial) -> String {
 }
 
 fn outcome(trial: &Trial) -> String {
-    let end = match trial.outcome {
-        Outcome::Failed(class) => format!("failed: {} (class {})", class.label(), class.number()),
-        outcome => outcome.word().to_owned(),
-    };
     format!(
-        "{end}; depth {:.2} mm, tilt {:.2}\u{b0}, peak force {:.1} N, slip {:.2} mm",
-        trial.depth_mm, trial.tilt_deg, trial.peak_force_n, trial.slip_mm
+        "{}; depth {:.2} mm, tilt {:.2}\u{b0}, peak force {:.1} N, slip {:.2} mm",
+        trial.outcome, trial.depth_mm, trial.tilt_deg, trial.peak_force_n, trial.slip_mm
     )
 }
 
@@ -123,12 +119,9 @@ fn extent(task: &Task, pad: &Pad, phases: &[PhaseEnd], axis: usize) -> Extent {
             geoms.iter().flat_map(|geom| projected(geom, &body, axis)).collect::<Vec<_>>()
         })
         .collect();
-    let range = |of: fn(&Point2<f64>) -> f64, room: f64| match points.is_empty() {
-        true => [-1.0, 1.0],
-        false => [
-            points.iter().map(of).fold(f64::INFINITY, f64::min) - MARGIN,
-            points.iter().map(of).fold(f64::NEG_INFINITY, f64::max) + MARGIN + room,
-        ],
+    let range = |of: fn(&Point2<f64>) -> f64, room: f64| match span(points.iter().map(of)) {
+        [low, high] if low <= high => [low - MARGIN, high + MARGIN + room],
+        _ => [-1.0, 1.0],
     };
     // Room for the name of the phase above.
     Extent { axis, across: range(|p| p.x, 0.0), up: range(|p| p.y, 6.0) }

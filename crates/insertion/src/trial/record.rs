@@ -11,6 +11,8 @@ use input::units::{DEG, MM};
 use nalgebra::Vector3;
 use serde::Serialize;
 
+/// Interval of the samples that a robot logs, s: 500 Hz.
+pub const LOG_STEP_S: f64 = 2e-3;
 /// Interval of the frames, s.
 const INTERVAL: f64 = 1e-3;
 
@@ -39,11 +41,6 @@ impl Frame {
     /// Returns the depth of the plug's tip below the socket's top, mm.
     pub fn depth_mm(&self) -> f64 {
         -self.poses.plug.translation.z / MM
-    }
-
-    /// Returns the pose of the latch, or of the plug if it has no latch.
-    pub fn latch(&self) -> Pose {
-        self.poses.latch.unwrap_or(self.poses.plug)
     }
 
     /// Returns the angle between the plug's axis and z, degrees.

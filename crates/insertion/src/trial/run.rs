@@ -3,7 +3,7 @@
 use super::attempt::driven::Driven;
 use super::attempt::{Attempt, Stop};
 use super::record::{Frame, Recorder, Trace};
-use super::{Followed, Grasp, Grasped, Probe, Recording, Rig, Trajectory, Trial, cell};
+use super::{Followed, Grasp, Grasped, Recording, Rig, Trajectory, Trial, cell};
 use crate::finger::Finger;
 use crate::outcome::Outcome;
 use crate::robot::{MountedRobot, Robot};
@@ -101,21 +101,21 @@ impl Rig for EngineRig {
         Some(Recording::new(trial, frames))
     }
 
-    fn follow(&self, grasp: Grasp<'_>, each: &[&Trajectory], every_s: f64) -> Vec<Followed> {
+    fn follow(&self, grasp: Grasp<'_>, each: &[&Trajectory]) -> Vec<Followed> {
         let mut held = Attempt::new(&self.robot, &self.task, &*self.engine, grasp);
         let grasped = held.grasp();
         let followed = each.iter().map(|trajectory| {
             let mut attempt = held.clone();
-            let end = grasped.and_then(|()| attempt.follow(trajectory, every_s));
+            let end = grasped.and_then(|()| attempt.follow(trajectory));
             attempt.result(end).0
         });
         followed.collect()
     }
 
-    fn probe(&self, grasp: Grasp<'_>, probe: &Probe, every_s: f64) -> Option<Followed> {
+    fn probe(&self, grasp: Grasp<'_>) -> Option<Followed> {
         let task = on_plate(&self.task);
         let mut attempt = Attempt::new(&self.robot, &task, &*self.engine, grasp);
-        let end = attempt.grasp().and_then(|()| attempt.probe(probe, every_s));
+        let end = attempt.grasp().and_then(|()| attempt.probe());
         Some(attempt.result(end).0)
     }
 

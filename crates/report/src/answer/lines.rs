@@ -9,8 +9,9 @@ use insertion::evaluation::robustness::firm::REPEATS;
 use insertion::evaluation::{Evaluation, grid_mm};
 use insertion::outcome::Outcome;
 use insertion::robot::Robot;
-use insertion::space::{Variable, label};
+use insertion::space::Variable;
 use insertion::surrogate::Prediction;
+use parameters::label;
 use std::iter;
 use study::{BenchPrediction, ByRibs, Recorded, StudyRecord};
 

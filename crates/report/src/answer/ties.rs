@@ -2,11 +2,11 @@
 
 use super::force::ExcessForce;
 use super::trust::{MeasuredFinger, range_mm};
-use super::words::extent;
 use ask_tell::process::distance2;
+use ask_tell::statistics::span;
 use input::units::N_PER_MM;
 use insertion::evaluation::objective::Measure;
-use insertion::space::label;
+use parameters::label;
 use study::{Recorded, StudyRecord};
 
 /// Designs whose first objective is worse than that of the recommended design by at most the study's indifference (mm),
@@ -146,7 +146,7 @@ fn spread<'a>(record: &'a StudyRecord, designs: &[(&Recorded, f64)]) -> Vec<Spre
     let free = record.config.space.parameters.iter().filter(|p| p.low < p.high);
     let of = |key: &'a str| {
         let values = designs.iter().filter_map(|(recorded, _)| recorded.design.get(key));
-        Spread { key, values: extent(values) }
+        Spread { key, values: span(values) }
     };
     free.map(|parameter| of(&parameter.key)).collect()
 }

@@ -56,11 +56,6 @@ pub fn number(value: f64, decimals: usize, unit: &str) -> String {
     if !value.is_finite() || text.len() > 15 { "none".to_owned() } else { format!("{text} {unit}") }
 }
 
-/// Returns the smallest and the largest value; infinity and minus infinity if there are no values.
-pub fn extent(values: impl Iterator<Item = f64>) -> [f64; 2] {
-    values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
-}
-
 /// Rounds a number to `decimals` decimals.
 pub fn rounded(value: f64, decimals: i32) -> f64 {
     let scale = 10f64.powi(decimals);

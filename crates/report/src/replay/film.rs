@@ -1,7 +1,7 @@
 //! Data of a film (recorded trial) for the page that plays it.
 
 use super::Film;
-use crate::answer::words::{self, rounded};
+use crate::answer::words::rounded;
 use contact::scene::{Geom, Pose};
 use contact::{ContactPoint, shapes};
 use input::units::MM;
@@ -45,7 +45,6 @@ pub(super) fn data(film: &Film) -> Value {
     let points = |of: &dyn Fn(&Frame) -> &[ContactPoint]| -> Vec<Vec<f64>> {
         frames.iter().map(|frame| of(frame).iter().flat_map(contact).collect()).collect()
     };
-    let failed = if trial.outcome.failure().is_some() { "failed: " } else { "" };
     let phases = trial.phases.iter().map(|p| (&*p.name, rounded(p.time_s, 4)));
     let mut trajectories = json!({
         "plug": poses(&|frame| frame.poses.plug),
@@ -55,11 +54,12 @@ pub(super) fn data(film: &Film) -> Value {
         "jaw1": poses(&|frame| frame.jaws[1]),
     });
     if film.task.plug.latch.is_some() {
-        trajectories["latch"] = json!(poses(&Frame::latch));
+        trajectories["latch"] =
+            json!(poses(&|frame| frame.poses.latch.unwrap_or(frame.poses.plug)));
     }
     json!({
         "label": film.label,
-        "outcome": format!("{failed}{}", words::outcome(trial.outcome)),
+        "outcome": trial.outcome.to_string(),
         "kind": trial.outcome.word(),
         // Rounded like the times of the frames, so that it is not after the last one.
         "decided_s": rounded(recording.decided_s, 4),

@@ -111,7 +111,7 @@ impl FingerWindows {
 
     /// Returns the tolerable range in a simulation, an index of `SIMULATIONS`, mm; 0 if no start inserts.
     pub fn range_mm(&self, simulation: usize) -> f64 {
-        self.windows[simulation].as_ref().map_or(0.0, |taught| taught.window.range_mm())
+        self.windows[simulation].as_ref().map_or(0.0, |taught| taught.evaluation.window.range_mm())
     }
 
     /// Returns the taught start and both ends in MuJoCo, mm from the task's own start.
@@ -138,13 +138,13 @@ impl FingerWindows {
 }
 
 fn starts_mm(taught: &TaughtStart) -> [f64; 3] {
-    let TaughtStart { shift, window, .. } = taught;
+    let TaughtStart { shift, evaluation: Evaluation { window, .. } } = taught;
     [*shift, shift + window.negative_steps, shift + window.positive_steps].map(grid_mm)
 }
 
 fn cells(taught: &TaughtStart) -> String {
     let [start, negative, positive] = starts_mm(taught);
-    let window = &taught.window;
+    let window = &taught.evaluation.window;
     let [below, above] = [window.end_negative, window.end_positive].map(|end| match end {
         Some(Outcome::Failed(class)) => class.number().to_string(),
         Some(other) => other.word().to_owned(),
@@ -164,10 +164,9 @@ pub fn window(
     let rig = engine.rig(task, robot, finger, 1.0).map_err(Failure::input)?;
     if let Some(shift) = near {
         let moved = Shifted { rig: &*rig, shift };
-        let found = tolerance::evaluate(&moved, finger, Search::Strides);
-        let Evaluation { window, peak_force_n, .. } = found;
-        if window.nominal == Outcome::Inserted {
-            return Ok(Some(TaughtStart { shift, window, peak_force_n }));
+        let evaluation = tolerance::evaluate(&moved, finger, Search::Strides);
+        if evaluation.window.nominal == Outcome::Inserted {
+            return Ok(Some(TaughtStart { shift, evaluation }));
         }
     }
     Ok(teach(&*rig, finger, &NEVER).ok())

@@ -71,7 +71,7 @@ pub fn line(
         let mut scenario = under.map_err(Failure::input)?;
         scenario.robot = robot.clone().unwrap_or(scenario.robot);
         let taught = window(&scenario, EngineKind::Direct, None)?;
-        Ok(taught.map_or(0.0, |taught| taught.window.range_mm()))
+        Ok(taught.map_or(0.0, |taught| taught.evaluation.window.range_mm()))
     });
     let identified = identified.collect::<Result<Vec<f64>, Failure>>()?;
     let nominal = others.iter().map(|one| one.range_mm(2)).collect();

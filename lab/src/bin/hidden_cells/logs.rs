@@ -1,14 +1,13 @@
 //! Simulated logs of attempts in hidden cells, with the errors of a real force sensor.
 
 use super::cell::{FingerWindows, HiddenCell};
-use calibration::identify::curves::STEP_S;
 use calibration::identify::log::of_samples;
 use finger_opt::failure::Failure;
 use input::units::MM;
 use insertion::evaluation::evaluator::Scenario;
 use insertion::space::Design;
+use insertion::trial::Grasp;
 use insertion::trial::engine::EngineKind;
-use insertion::trial::{Grasp, Probe};
 use std::path::Path;
 use study::write_file;
 
@@ -42,12 +41,12 @@ pub fn write(
         for (i, offset_mm) in offsets.into_iter().enumerate() {
             let (samples, outcome) = match offset_mm {
                 None => {
-                    let probed = rig.probe(grasp, &Probe::DEFAULT, STEP_S);
+                    let probed = rig.probe(grasp);
                     let none = || Failure::running("the engine simulates no probe");
                     (probed.ok_or_else(none)?.1, "probe".to_owned())
                 }
                 Some(mm) => {
-                    let (trial, samples) = rig.grasp(grasp).logged(mm * MM, STEP_S);
+                    let (trial, samples) = rig.grasp(grasp).logged(mm * MM);
                     let class = trial.outcome.failure();
                     (samples, class.map_or("inserted".to_owned(), |class| class.to_string()))
                 }

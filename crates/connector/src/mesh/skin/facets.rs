@@ -1,7 +1,7 @@
 //! Triangles with their neighbours, and the flat faces that they form.
 
-use crate::mesh::Triangle;
 use crate::mesh::surface::weld;
+use crate::mesh::{Triangle, edges};
 use input::units::MM;
 use nalgebra::{Point3, Vector3};
 use std::collections::BTreeMap;
@@ -39,21 +39,24 @@ impl Facets {
         let normals = faces.iter().map(normal).collect();
         let mut sides: BTreeMap<[usize; 2], Option<usize>> = BTreeMap::new();
         for (number, face) in faces.iter().enumerate() {
-            for i in 0..3 {
-                let side = [face[i], face[(i + 1) % 3]];
+            for side in edges(*face) {
                 sides.entry(side).and_modify(|face| *face = None).or_insert(Some(number));
             }
         }
-        let other = |face: &[usize; 3], i: usize| {
-            sides.get(&[face[(i + 1) % 3], face[i]]).copied().flatten()
-        };
-        let across = faces.iter().map(|face| [0, 1, 2].map(|i| other(face, i))).collect();
+        let other = |[from, to]: [usize; 2]| sides.get(&[to, from]).copied().flatten();
+        let across = faces.iter().map(|face| edges(*face).map(other)).collect();
         Facets { points, faces, normals, across }
     }
 
     /// Returns the corners of a triangle.
     pub fn corners(&self, face: usize) -> Triangle {
         self.faces[face].map(|corner| self.points[corner])
+    }
+
+    /// Returns the edges that a triangle shares, each with the triangle across it.
+    pub fn neighbours(&self, face: usize) -> impl Iterator<Item = ([usize; 2], usize)> {
+        let sides = edges(self.faces[face]).into_iter().zip(self.across[face]);
+        sides.filter_map(|(side, other)| Some((side, other?)))
     }
 
     fn double_area(&self, face: usize) -> f64 {

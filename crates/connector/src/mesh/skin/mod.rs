@@ -143,26 +143,19 @@ impl<'a> FaceIndex<'a> {
     /// Returns the planes of the faces that meet a polygon at less than a right angle.
     fn sharp(&self, flat: &[usize], polygon: &[usize], normal: &Vector3<f64>) -> Vec<SharpFace> {
         let mut found: Vec<SharpFace> = Vec::new();
-        for &face in flat {
-            for i in 0..3 {
-                let ends = [self.facets.faces[face][i], self.facets.faces[face][(i + 1) % 3]];
-                let on = |end: &usize| polygon.contains(end);
-                let Some(other) = self.facets.across[face][i].filter(|_| ends.iter().all(on))
-                else {
-                    continue;
-                };
-                let side = self.facets.normals[other];
-                let (flat, origin) = (self.flat_of[other], self.facets.points[ends[0]]);
-                let convex = |p: Point3<f64>| (p - origin).dot(normal) < CONVEX;
-                // The plane at a short edge of an outline that bends slightly inward would cut off too much.
-                let below = |&i: &usize| (self.facets.points[i] - origin).dot(&side) < CONVEX;
-                if (-FILM..-1e-6).contains(&side.dot(normal))
-                    && self.facets.corners(other).into_iter().all(convex)
-                    && polygon.iter().all(below)
-                    && found.iter().all(|(known, ..)| *known != flat)
-                {
-                    found.push((flat, origin, side));
-                }
+        let shared = flat.iter().flat_map(|&face| self.facets.neighbours(face));
+        for (ends, other) in shared.filter(|(ends, _)| ends.iter().all(|i| polygon.contains(i))) {
+            let side = self.facets.normals[other];
+            let (flat, origin) = (self.flat_of[other], self.facets.points[ends[0]]);
+            let convex = |p: Point3<f64>| (p - origin).dot(normal) < CONVEX;
+            // The plane at a short edge of an outline that bends slightly inward would cut off too much.
+            let below = |&i: &usize| (self.facets.points[i] - origin).dot(&side) < CONVEX;
+            if (-FILM..-1e-6).contains(&side.dot(normal))
+                && self.facets.corners(other).into_iter().all(convex)
+                && polygon.iter().all(below)
+                && found.iter().all(|(known, ..)| *known != flat)
+            {
+                found.push((flat, origin, side));
             }
         }
         found

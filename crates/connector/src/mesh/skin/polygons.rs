@@ -11,10 +11,8 @@ pub fn polygons(facets: &Facets, flat: &[usize], normal: &Vector3<f64>) -> Vec<V
     let place: BTreeMap<usize, usize> = flat.iter().copied().zip(0..).collect();
     let mut edges: Vec<(f64, [usize; 2], [usize; 2])> = Vec::new();
     for (&face, &own) in &place {
-        for i in 0..3 {
-            let ends = [facets.faces[face][i], facets.faces[face][(i + 1) % 3]];
-            let other = facets.across[face][i].and_then(|other| place.get(&other));
-            if let Some(&other) = other.filter(|&&other| own < other) {
+        for (ends, other) in facets.neighbours(face) {
+            if let Some(&other) = place.get(&other).filter(|other| own < **other) {
                 let long = (facets.points[ends[0]] - facets.points[ends[1]]).norm();
                 edges.push((long, ends, [own, other]));
             }

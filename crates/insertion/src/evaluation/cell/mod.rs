@@ -84,15 +84,16 @@ impl Priors {
         self.parameters.iter().filter(move |row| row.shared || own)
     }
 
-    /// Returns the parameters that were identified on another task and do not apply to this one.
-    pub fn not_of<'a>(&'a self, task: &'a str) -> impl Iterator<Item = &'a Parameter> {
+    /// Returns the paths of the parameters that were identified on another task and do not apply to this one.
+    pub fn not_applied(&self, task: &str) -> Vec<&str> {
         let own = self.task.as_ref().is_none_or(|own| own == task);
-        self.parameters.iter().filter(move |row| !row.shared && !own)
+        let others = self.parameters.iter().filter(|row| !row.shared && !own);
+        others.map(|row| &*row.path).collect()
     }
 
     /// Returns a sentence that names the parameters that do not apply to a task; `None` if all do.
     pub fn remark(&self, task: &str) -> Option<String> {
-        let names: Vec<_> = self.not_of(task).map(|row| &*row.path).collect();
+        let names = self.not_applied(task);
         let own = self.task.as_ref().filter(|_| !names.is_empty())?;
         let (name, names) = (&self.name, names.join(", "));
         Some(format!("cell `{name}` was identified on {own}; not applied to {task}: {names}"))

@@ -1,5 +1,6 @@
 //! Aggregation over several tasks.
 
+use ask_tell::statistics::weighted_mean;
 use input::shown;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -49,20 +50,16 @@ impl Aggregate {
 
     /// Returns the aggregate of the values of at least one task; `sense` is 1 to maximize, -1 to minimize.
     pub fn of(&self, sense: f64, values: &[f64]) -> f64 {
-        let mean = |weights: &[f64]| {
-            let terms = values.iter().zip(weights);
-            let (sum, total) =
-                terms.fold((0.0, 0.0), |(sum, total), (v, w)| (sum + v * w, total + w));
-            sum / total
-        };
         match self {
             // A weighted mean of a single value could differ from it in the last digit.
             _ if values.len() == 1 => values[0],
             Aggregate::Min => {
                 sense * values.iter().map(|value| sense * value).fold(f64::INFINITY, f64::min)
             }
-            Aggregate::Mean => mean(&vec![1.0; values.len()]),
-            Aggregate::Weighted(weights) => mean(weights),
+            Aggregate::Mean => weighted_mean(values.iter().map(|value| (*value, 1.0))),
+            Aggregate::Weighted(weights) => {
+                weighted_mean(values.iter().copied().zip(weights.iter().copied()))
+            }
         }
     }
 }

@@ -127,12 +127,6 @@ pub struct Score {
 }
 
 impl Goals {
-    /// Returns a single objective without constraints.
-    pub fn of(measure: Measure) -> Self {
-        let objectives = Objectives::of(measure);
-        Goals { objectives, constraints: Vec::new(), aggregate: Aggregate::Min }
-    }
-
     /// Returns whether a measure is an objective or is constrained.
     pub fn needs(&self, measure: Measure) -> bool {
         self.measures().any(|needed| needed == measure)
@@ -293,7 +287,8 @@ mod tests {
     }
 
     fn interpolated(measure: Measure, evaluation: &Evaluation) -> f64 {
-        Goals::of(measure).interpolated(&[evaluation]).unwrap()[0]
+        let goals = goals(measure.name(), &[], Aggregate::Min);
+        goals.interpolated(&[evaluation]).unwrap()[0]
     }
 
     fn measured(compliance: f64, assembly: f64) -> Evaluation {

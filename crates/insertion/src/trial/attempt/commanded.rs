@@ -3,7 +3,7 @@
 use super::{Attempt, Stop};
 use crate::task::Stage;
 use crate::trial::motion::{Move, Tcp};
-use crate::trial::record::Trace;
+use crate::trial::record::{LOG_STEP_S, Trace};
 use input::units::MM;
 use nalgebra::Vector3;
 
@@ -55,24 +55,15 @@ impl Trajectory {
     }
 }
 
-/// Friction probe: the upright part is pressed on a flat face and slid back and forth along y.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Probe {
-    /// Force with which the part is pressed, N.
-    pub force: f64,
-    /// Length of a slide, m.
-    pub stroke: f64,
-    /// Speed of a slide, m/s.
-    pub speed: f64,
-    /// Number of slides, in alternating directions.
-    pub slides: u32,
-}
-
-impl Probe {
-    /// Default probe: two strokes of 8 mm in each direction at 5 mm/s and 5 N. Under 10 N, a plug 8 mm wide tips over
-    /// its edge at coefficients of friction from 0.3; strokes of 5 mm are too short for it to slide in both directions.
-    pub const DEFAULT: Probe = Probe { force: 5.0, stroke: 8.0 * MM, speed: 5.0 * MM, slides: 4 };
-}
+/// Force with which the upright part is pressed on a flat face in a friction probe, N. Under 10 N, a plug 8 mm wide
+/// tips over its edge at coefficients of friction from 0.3.
+pub const PROBE_FORCE: f64 = 5.0;
+/// Length of a slide of the probe along y, m; with 5 mm, the part would not slide in both directions.
+pub const PROBE_STROKE: f64 = 8.0 * MM;
+/// Speed of a slide of the probe, m/s.
+pub const PROBE_SPEED: f64 = 5.0 * MM;
+/// Number of slides of the probe, in alternating directions.
+pub const PROBE_SLIDES: u32 = 4;
 
 /// Height above the face from which the probe descends, m.
 const PROBE_HEIGHT: f64 = 2.0 * MM;
@@ -88,9 +79,9 @@ const LIFT_SPEED: f64 = 0.02;
 
 impl Attempt<'_> {
     /// Carries the grasped part to the start of the trajectory, follows the trajectory and records samples of it.
-    pub fn follow(&mut self, trajectory: &Trajectory, every_s: f64) -> Result<(), Stop> {
+    pub fn follow(&mut self, trajectory: &Trajectory) -> Result<(), Stop> {
         self.carry(trajectory.at(0.0))?;
-        self.trace = Some(Trace::new(every_s));
+        self.trace = Some(Trace::new(LOG_STEP_S));
         self.stage = Stage::Search;
         let push = trajectory.push_start();
         // The first sample is at the end of the first step, and has the first target.
@@ -108,24 +99,24 @@ impl Attempt<'_> {
     }
 
     /// Slides the grasped part over the flat face that replaces the socket.
-    pub fn probe(&mut self, probe: &Probe, every_s: f64) -> Result<(), Stop> {
+    pub fn probe(&mut self) -> Result<(), Stop> {
         let z = self.task.grip.tcp_z + PROBE_HEIGHT;
-        self.carry(Tcp { position: Vector3::new(0.0, -0.5 * probe.stroke, z), tilt: 0.0 })?;
-        self.trace = Some(Trace::new(every_s));
+        self.carry(Tcp { position: Vector3::new(0.0, -0.5 * PROBE_STROKE, z), tilt: 0.0 })?;
+        self.trace = Some(Trace::new(LOG_STEP_S));
         self.stage = Stage::Search;
         self.rest(REST_IN_AIR)?;
-        let down = Vector3::new(0.0, 0.0, -probe.speed);
-        for _ in 0..self.steps(MAX_DESCENT / probe.speed) {
-            if self.monitor.force.z >= probe.force {
+        let down = Vector3::new(0.0, 0.0, -PROBE_SPEED);
+        for _ in 0..self.steps(MAX_DESCENT / PROBE_SPEED) {
+            if self.monitor.force.z >= PROBE_FORCE {
                 break;
             }
             self.step_at(down)?;
         }
-        let slide = self.steps(probe.stroke / probe.speed);
-        for i in 0..probe.slides {
-            let along = if i.is_multiple_of(2) { probe.speed } else { -probe.speed };
+        let slide = self.steps(PROBE_STROKE / PROBE_SPEED);
+        for i in 0..PROBE_SLIDES {
+            let along = if i.is_multiple_of(2) { PROBE_SPEED } else { -PROBE_SPEED };
             for _ in 0..slide {
-                let lower = ADMITTANCE * (self.monitor.force.z - probe.force);
+                let lower = ADMITTANCE * (self.monitor.force.z - PROBE_FORCE);
                 self.step_at(Vector3::new(0.0, along, lower))?;
             }
         }

@@ -625,7 +625,7 @@ fn a_header_of_pins_inserts_and_misses_by_one_pitch() {
     of("-2.54").says(&["plug missed"]);
     for (words, error) in [
         ("--pins 2x5 --pitch-mm 0.7", "it must be more than a hole, 0.84 mm"),
-        ("--pins 2x5 --body 2x2x20", "cover all pins, 3.18 x 10.80 mm"),
+        ("--pins 2x5 --body 2x2x20", "cover all pins, 3.18 x 10.8 mm"),
         ("--pins 2x0", "ROWSxCOLUMNS"),
         ("--pins 20x20", "at most 100 pins"),
         ("--pins 2x5 --pin-mm 0", "0.1"),

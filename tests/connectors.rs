@@ -334,7 +334,12 @@ fn depths_count_from_the_opening_of_a_plug_with_a_nose() {
     let mut socket = frame([14.0, 24.0], [7.2, 16.2], [-16.0, 0.0]);
     socket.push(block([-7.0, 7.0], [-12.0, 12.0], [-18.0, -16.0]));
     let found = inserts(&folder, "nosed", [plug, socket], [0.2, 0.2]);
-    assert!(found["found"].to_string().contains("12.00 mm of the plug's 30.00 mm"), "{found}");
+    assert!(
+        found["found"]
+            .to_string()
+            .contains("9.00 mm of the plug's 30.00 mm engage, behind a nose of 3.00 mm"),
+        "{found}"
+    );
     assert!(found["found"].to_string().contains("z = 0 is on the socket's top"), "{found}");
     for offset_mm in ["-0.7", "0.7"] {
         assert_eq!(outcome(&folder, "nosed", offset_mm), "inserted", "{offset_mm}");
@@ -351,6 +356,22 @@ fn depths_count_from_the_opening_of_a_plug_with_a_nose() {
     assert!(checked.stdout.contains("`approach` ends inside of the socket"), "{}", checked.stdout);
 }
 
+/// A recess of 2 mm: the plug is guided below it, and starts above all of the socket.
+#[test]
+fn a_plug_starts_above_a_deep_lead_in() {
+    let folder = Studies::new();
+    let plug = vec![
+        block([-3.5, 3.5], [-8.0, 8.0], [0.0, 16.0]),
+        block([-5.0, 5.0], [-9.5, 9.5], [16.0, 34.0]),
+    ];
+    let mut socket = frame([14.0, 24.0], [7.2, 16.2], [-12.0, 0.0]);
+    socket.extend(frame([14.0, 24.0], [11.2, 20.2], [0.0, 2.0]));
+    socket.push(block([-7.0, 7.0], [-12.0, 12.0], [-14.0, -12.0]));
+    let found = inserts(&folder, "recess", [plug, socket], [0.2, 0.2]);
+    assert!(found["found"].to_string().contains("2.00 mm below the socket's top"), "{found}");
+    assert_eq!(outcome(&folder, "recess", "0.7"), "inserted");
+}
+
 /// A spring that the plug would push aside is listed, drawn, and out of the way.
 #[test]
 fn a_contact_spring_is_drawn_and_touches_nothing() {
@@ -358,6 +379,7 @@ fn a_contact_spring_is_drawn_and_touches_nothing() {
     let [plug, mut socket] = header();
     socket.push(block([2.9, 3.2], [-1.0, 1.0], [3.0, 5.0]));
     let found = imported(&folder, "sprung", [plug, socket]).json();
+    assert_clearance(&found, [0.2, 0.2]);
     let left_out = found["left_out"].as_array().unwrap();
     assert_eq!((left_out.len(), &left_out[0]["body"]), (1, &"socket".into()), "{found}");
     assert_eq!(found["check"]["nominal"]["outcome"], "inserted", "{found}");

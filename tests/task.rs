@@ -319,7 +319,7 @@ fn a_task_is_made_shown_checked_and_used() {
     assert!(said(new, &[path]).succeeds().contains(path));
     said(new, &[path]).fails(2, &["exists", "--out"]);
     let other = folder.word("my rigid.toml");
-    let next = format!("next          optimize task tune '{other}' --robot rigid\n");
+    let next = format!("next          optimize task tune '{other}' --robot rigid --engine fake\n");
     said(&format!("task new c --like {path} --robot rigit --engine fake --out"), &[&other])
         .fails(2, &["did you mean `rigid`"]);
     let made = said(&new.replace(" --out", " --robot rigid --out"), &[&other]);

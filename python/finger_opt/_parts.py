@@ -42,7 +42,7 @@ class MatedPose(Result):
     """Pose in which the plug can be mated."""
 
     insert_along: str
-    #: Depth over which plug and socket engage, mm.
+    #: Depth of the plug's tip below the socket's edge, mm.
     depth_mm: float
     #: Angle between this pose and the first, degrees.
     turn_deg: float

@@ -20,6 +20,8 @@ use study::write_file;
 
 /// Largest number of overlaps that are listed.
 const MAX_SHOWN: usize = 4;
+/// Length of a tip ahead of the part that engages above which it is named, mm: longer than rounded edges.
+const LEAST_NOSE_MM: f64 = 0.5;
 /// Names of the bodies of an [`Interference`] or a deviation.
 const BODIES: [&str; 2] = ["plug", "socket"];
 
@@ -178,9 +180,13 @@ fn described(
     made: &PairTask,
     handle: Option<[f64; 3]>,
 ) -> Vec<(&'static str, String)> {
-    let depth = mate.depth_m() / MM;
+    let [depth, nose] = [mate.depth_m(), mate.nose_m].map(|length| length / MM);
     let [long, needed] = lengths.map(|length| length / MM);
     let engaged = match depth <= long {
+        true if nose > LEAST_NOSE_MM => format!(
+            "{:.2} mm of the plug's {long:.2} mm engage, behind a nose of {nose:.2} mm",
+            depth - nose
+        ),
         true => format!("{depth:.2} mm of the plug's {long:.2} mm engage"),
         false => format!("the plug of {long:.2} mm goes {depth:.2} mm along a post"),
     };

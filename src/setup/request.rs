@@ -85,11 +85,14 @@ pub struct RobotRequest {
 }
 
 impl RobotRequest {
-    /// Returns a command on a task file, with this robot unless it is the default.
+    /// Returns a command on a task file, with this robot and engine unless they are the default.
     pub fn command(&self, command: &str, file: impl Display) -> String {
         let robot = Some(&self.name).filter(|name| *name != DEFAULT_ROBOT);
         let robot = robot.map(|name| format!(" --robot {}", shell_word(name)));
-        format!("optimize {command} {}{}", shell_word(file), robot.unwrap_or_default())
+        let engine = Some(self.engine).filter(|engine| *engine != EngineKind::default());
+        let engine = engine.map(|engine| format!(" --engine {}", value(engine)));
+        let options = [robot, engine].into_iter().flatten().collect::<String>();
+        format!("optimize {command} {}{options}", shell_word(file))
     }
 }
 

@@ -15,7 +15,7 @@ use report::replay::{self, ENDS, Film, pair_file, poster_file};
 use std::fs;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
-use study::write_file;
+use study::write_own_file;
 
 /// Records the pair of trials at each end of the recommended design's windows into the study's folder; replaces or
 /// removes the files of an earlier run. Ends early once `stop` is set.
@@ -42,11 +42,15 @@ pub(crate) fn boundary(
                 return Ok(());
             }
             for (i, file) in files.iter().enumerate() {
-                match &texts {
-                    Some(texts) => write_file(file, &texts[i])?,
+                let Some(texts) = &texts else {
                     // The file may not exist.
-                    None => drop(fs::remove_file(file)),
-                }
+                    drop(fs::remove_file(file));
+                    continue;
+                };
+                let folder = file.parent().unwrap_or(dir);
+                fs::create_dir_all(folder)
+                    .map_err(|error| Failure::running(format!("{}: {error}", folder.display())))?;
+                write_own_file(file, &texts[i])?;
             }
         }
     }

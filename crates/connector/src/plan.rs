@@ -92,7 +92,9 @@ pub fn mated(mut task: Task, depth: f64, nose: f64, play: [f64; 2]) -> Task {
     task.success.mated = Some(Mated { tip: [0.0, 0.0, -depth], lateral });
     let bodies = TaskBodies::new(&task);
     let task = planned(&bodies, &bodies.deepest());
-    Task { strategy: straight(&task, depth, nose), ..task }
+    // Walls about a recess or a lead-in are above z = 0.
+    let top = bodies.socket.extent(2)[1].max(0.0);
+    Task { strategy: straight(&task, [top, nose], depth), ..task }
 }
 
 /// Returns the task with grasp point and success.
@@ -112,16 +114,16 @@ fn planned(bodies: &TaskBodies, seat: &Seat) -> Task {
 }
 
 /// Returns a strategy that sets the plug down upright over its seat, at this depth, m, sweeps it along y until it drops
-/// in, and pushes. Drawn connectors have a lead-in, and pins and tongues that a tilted plug would meet first.
-fn straight(task: &Task, depth: f64, nose: f64) -> Strategy {
-    let start = [0.0, 0.0, task.grip.tcp_z + AIR[0]].map(round_mm);
-    // The body touches the socket, its nose below the top.
-    let push = start[2] - AIR[0] - nose - SWEPT_PRELOAD - (task.grip.tcp_z - depth - PUSH[0]);
+/// in, and pushes; it starts above the top of the socket, m, and the nose, m, enters before the plug touches. Drawn connectors have a lead-in, and pins and tongues that a tilted plug would meet first.
+fn straight(task: &Task, [top, nose]: [f64; 2], depth: f64) -> Strategy {
+    let start = [0.0, 0.0, task.grip.tcp_z + top + AIR[0]].map(round_mm);
+    // Of a plug with a nose, the body behind it touches.
+    let push = depth + PUSH[0] - nose - SWEPT_PRELOAD;
     use {Ending::*, Stage::*};
     let touch = Touch { preload: SWEPT_PRELOAD, detection: TouchDetection::FIRST };
     let phases = vec![
         phase("approach", Approach, [0.0, 0.0, AIR[1] - AIR[0]], 150.0, Tolerance(0.1 * MM)),
-        phase("touch", Search, [0.0, 0.0, -(TOUCH + nose)], 20.0, touch),
+        phase("touch", Search, [0.0, 0.0, -(TOUCH + top + nose)], 20.0, touch),
         phase("back", Search, [0.0, SWEEP, 0.0], 40.0, Duration(0.01)),
         phase("front", Search, [0.0, -2.0 * SWEEP, 0.0], 40.0, Duration(0.01)),
         phase("middle", Search, [0.0, SWEEP, 0.0], 40.0, Duration(0.01)),

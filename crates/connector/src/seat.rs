@@ -13,6 +13,8 @@ const TOLERANCE: f64 = 0.02 * MM;
 const STEP: f64 = 0.25 * MM;
 /// Resolution of the depth of the seat, m.
 const FINE: f64 = 0.005 * MM;
+/// Distance beyond the lateral tolerance at which a plug counts as beside its seat, m.
+const ASIDE: f64 = 0.2 * MM;
 /// Overlap of bodies that only touch, m.
 const TOUCHING: f64 = 1e-3 * MM;
 /// Largest lateral play that is measured, m.
@@ -73,6 +75,19 @@ impl<'a> TaskBodies<'a> {
             depth += STEP;
         }
         Seat { depth: free, at, stopped_by: None }
+    }
+
+    /// Returns the length of a mated plug's tip that enters without being guided, m: the depth down to which the plug can
+    /// be to one side of its seat.
+    pub fn nose(&self) -> f64 {
+        let Some(Mated { tip: [x, y, z], lateral }) = self.task.success.mated else { return 0.0 };
+        let aside = lateral + ASIDE;
+        let free = |depth: &f64| {
+            let at = [[x - aside, y], [x + aside, y], [x, y - aside], [x, y + aside]];
+            at.into_iter().any(|at| self.overlap(*depth, at).0 <= TOLERANCE)
+        };
+        let depths = (0..).map(|i| f64::from(i) * STEP).take_while(|depth| *depth < -z);
+        depths.take_while(free).last().unwrap_or(0.0)
     }
 
     /// Returns the total play of the upright plug at a depth along an axis (0 x, 1 y), m.
@@ -185,13 +200,11 @@ pub fn plug_pose(task: &Task, tcp: Vector3<f64>) -> Pose {
     Pose::from_parts(tcp.into(), turn) * Pose::translation(0.0, 0.0, -task.grip.tcp_z)
 }
 
-/// Returns the start and the ends of the phases; a touch ends at its preload below the socket's top, or drops an upright
-/// plug into the seat that it stands over.
+/// Returns the start and the ends of the phases; a touch ends at its preload below z = 0.
 pub fn waypoints(task: &Task, plug: &ConvexBody) -> Vec<Waypoint> {
     let start = Vector3::from(task.strategy.start);
     let lowest = plug.lowest(&plug_pose(task, start));
     let edge = lowest.unwrap_or_else(Point3::origin) - start;
-    let drops = task.success.mated.is_some() && task.strategy.tilt == 0.0;
     let mut found = vec![Waypoint {
         name: "start".to_owned(),
         stage: Stage::Approach,
@@ -207,7 +220,7 @@ pub fn waypoints(task: &Task, plug: &ConvexBody) -> Vec<Waypoint> {
             let end = edge.z + by.z;
             if end > 0.0 || by.z >= 0.0 {
                 short_by = Some(end);
-            } else if !drops {
+            } else {
                 // Straight down to the surface, and on by the preload.
                 by *= (edge.z.max(0.0) + preload) / -by.z;
             }

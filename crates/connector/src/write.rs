@@ -175,7 +175,7 @@ pub fn strategy(strategy: &Strategy) -> String {
     let rule = if strategy.rule == StartRule::Taught { "start = \"taught\"\n" } else { "" };
     let phases: String = strategy.phases.iter().map(phase).collect();
     let [tilt, start] = match strategy.tilt {
-        0.0 => ["Upright.", "The plug over its seat."],
+        0.0 => ["Upright.", "The plug's axis above x and y."],
         _ => [
             "Tilted about x: the tip's edge at -y is the lowest.",
             "The tip's lower edge over the middle of the opening in y.",

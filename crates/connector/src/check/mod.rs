@@ -7,7 +7,6 @@ mod strategy;
 mod units;
 
 pub use units::FACES_MM;
-pub(crate) use units::LEAST_TILT_DEG;
 
 use super::body::{clipped, extent, width};
 use super::seat::TaskBodies;

@@ -121,8 +121,8 @@ fn short_touch(point: &Waypoint) -> Option<Problem> {
 
 /// Checks that the moves reach the success depth.
 fn too_shallow(case: &TaskBodies, way: &[Waypoint]) -> Option<Problem> {
-    // Depth of the tip of an upright plug at the end of the path.
-    let depth = way.last().map_or(0.0, |last| case.task.grip.tcp_z - last.tcp.z);
+    // Depth of the tip of an upright plug at the end of the path; a touch stops its body, behind a nose.
+    let depth = way.last().map_or(0.0, |last| case.task.grip.tcp_z - last.tcp.z) + case.nose();
     let missing = case.task.success.depth - depth;
     let last = case.task.strategy.phases.last().filter(|_| missing > 0.0)?;
     let z = mm(last.displacement[2] - missing - PRESS);

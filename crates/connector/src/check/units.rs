@@ -17,8 +17,10 @@ const UNITS: [(&str, f64); 4] =
 /// Smallest plausible widths of a plug as shares of its opening: in both directions, and in one. Shipped tasks have at
 /// least 0.6, a flat pin in a round hole 0.1.
 const LEAST_SHARE: [f64; 2] = [1.0 / 8.0, 1.0 / 20.0];
+/// Largest plausible width of a plug as a share of its opening, in both directions.
+const MOST_SHARE: f64 = 8.0;
 /// Smallest plausible tilt except 0, degrees. Smaller numbers are angles up to 15 degrees, in radians.
-pub const LEAST_TILT_DEG: f64 = 0.27;
+const LEAST_TILT_DEG: f64 = 0.27;
 
 /// Checks lengths and angles for a wrong unit.
 pub(super) fn problems(case: &TaskBodies) -> Vec<Problem> {
@@ -57,7 +59,10 @@ pub(super) fn problems(case: &TaskBodies) -> Vec<Problem> {
             Ending::Duration(_) => None,
         });
     }
-    found.extend(angle("strategy.tilt_deg", task.strategy.tilt));
+    // `task tune` varies a tilt in steps of 0.1 degrees.
+    let tenths = task.strategy.tilt / DEG * 10.0;
+    let radians = (tenths - tenths.round()).abs() > 1e-6;
+    found.extend(angle("strategy.tilt_deg", task.strategy.tilt).filter(|_| radians));
     found.extend(angle("success.tilt_deg", task.success.tilt));
     if found.is_empty() {
         found.extend(other_unit(case));
@@ -99,13 +104,19 @@ fn angle(key: &str, angle: f64) -> Option<Problem> {
     Some(Problem::new(key, problem, remedy))
 }
 
-/// Checks that the plug is not so narrow in the opening that it must be in another unit.
+/// Checks that neither the plug nor the opening is so narrow that it must be in another unit.
 fn other_unit(case: &TaskBodies) -> Option<Problem> {
     let depth = case.task.success.depth;
     let [plug, opening] = [section(&case.plug, depth), case.task.opening].map(|of| of.map(width));
     let share = |axis: usize| plug[axis] / opening[axis];
     let axis = usize::from(share(1) < share(0));
     let [both, one] = LEAST_SHARE;
+    if share(axis) > MOST_SHARE {
+        let [plug, opening] = [plug[axis], opening[axis]].map(|width| width / MM);
+        let (key, wide) = (format!("socket.opening_{}_mm", ["x", "y"][axis]), mm(plug * MM));
+        let problem = format!("is {} mm wide, but the plug is {wide} mm wide", mm(opening * MM));
+        return Some(Problem::new(key, problem, remedy(opening, [plug, plug / both])));
+    }
     if share(axis) >= one && share(1 - axis) >= both {
         return None;
     }

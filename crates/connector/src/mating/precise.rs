@@ -18,8 +18,6 @@ const MOST_CELLS: f64 = 1.5e6;
 const LIFT: f64 = 0.1 * MM;
 /// Width of the margin around interfering cells that is left out with them, m.
 const MARGIN: f64 = 0.1 * MM;
-/// Number of times that the cells left out are extended along a spring that the plug touches beside them.
-const SPRING_ROUNDS: usize = 20;
 /// Number of times that the plug is centred, in x and then in y.
 const ROUNDS: usize = 2;
 
@@ -30,6 +28,8 @@ struct PlayMeasurement<'a> {
     window: Window,
     /// Cells of the plug in which the parts interfere.
     interfering: Vec<[i32; 2]>,
+    /// Width of their region, m.
+    interference: f64,
     /// These cells with one and with two margins around them.
     around: [CellSet; 2],
     /// Side of these cells, m.
@@ -60,13 +60,15 @@ impl PlayMeasurement<'_> {
     /// Leaves out more cells.
     fn leave_out(&mut self, cells: impl IntoIterator<Item = [i32; 2]>) {
         self.interfering.extend(cells);
+        self.interfering.sort_unstable();
+        self.interfering.dedup();
         let margin = (MARGIN / self.step).ceil() as usize;
         let cells = CellSet::new(&self.interfering);
         self.around = [margin, 2 * margin].map(|reach| cells.dilated(reach));
     }
 
     /// Returns the cells in which the plug touches the socket at an offset, if all are beside those left out, as along a
-    /// spring that gets out of its way; else none.
+    /// spring; else none.
     fn spring(
         &self,
         [upper, lower]: [&HeightMap; 2],
@@ -117,20 +119,23 @@ impl PlayMeasurement<'_> {
     }
 
     /// Centres the plug along a lateral axis at a height, m, and returns its total play, m; it is measured up to
-    /// `max_play` to either side.
+    /// `max_play` to either side. A spring on one side, which the plug overlaps in its pose, is left out as far as the
+    /// plug can move towards it: at most by the overlap, beyond which it could be a wall.
     fn centre(&mut self, axis: usize, height: f64, max_play: f64) -> f64 {
-        let mut found = None;
-        for _ in 0..SPRING_ROUNDS {
+        let (mut found, mut least) = (None, i32::MAX);
+        loop {
             let [upper, lower] = &self.maps(axis);
             let maps = [upper, lower];
             let Some([low, high]) = self.free(maps, axis, height, max_play) else { break };
             found = Some([low, high]);
+            least = least.min(high - low);
             let beyond = [low - 1, high + 1].map(|offset| along(axis, offset));
-            let springs = beyond.map(|shift| self.spring(maps, shift, height)).concat();
-            if springs.is_empty() {
+            let springs = beyond.map(|shift| self.spring(maps, shift, height));
+            let one = springs[0].is_empty() != springs[1].is_empty();
+            if !one || f64::from(high - low - least) * CELL >= self.interference {
                 break;
             }
-            self.leave_out(springs);
+            self.leave_out(springs.concat());
         }
         let Some([low, high]) = found else { return 0.0 };
         self.shift[axis] += f64::from(low + high) / 2.0 * CELL;
@@ -157,8 +162,9 @@ pub fn mate(parts: &Parts, scene: &Scene, pose: &Pose, max_play: f64) -> Mate {
     let (socket, plug) = (&scene.sockets[pose.out], &scene.plugs[pose.turn]);
     let (window, step, shift) = (fine.window, fine.step, pose.shift);
     let (interfering, around) = (Vec::new(), Default::default());
+    let interference = fine.interference(pose);
     let mut measurement =
-        PlayMeasurement { socket, plug, window, interfering, around, step, shift };
+        PlayMeasurement { socket, plug, window, interfering, interference, around, step, shift };
     measurement.leave_out(fine.overlap(pose));
     let height = pose.z + LIFT;
     let mut play_m = [0.0; 2];

@@ -264,7 +264,7 @@ impl Fine {
         let depth = (f64::from(height) - pose.z).max(0.0);
         let met = touching([&s, &p], at, height - LEVEL).map(|[x, y]| p.at(x, y));
         let met = met.fold(-NOWHERE, f32::max);
-        let nose = (f64::from(met) - self.heights[1][0]).max(0.0);
+        let nose = if depth > 0.0 { (f64::from(met) - self.heights[1][0]).max(0.0) } else { 0.0 };
         Pose { depth, nose, ..pose }
     }
 
@@ -301,7 +301,7 @@ impl Fine {
     }
 
     /// Returns the width of the region that both parts fill at a pose, m.
-    fn interference(&self, pose: &Pose) -> f64 {
+    pub fn interference(&self, pose: &Pose) -> f64 {
         let cells = CellSet::new(&self.overlap(pose));
         let width = if cells.is_empty() { 0.0 } else { TOLERANCE };
         (0..cells.depth()).fold(width, |width, _| width + 2.0 * self.step)

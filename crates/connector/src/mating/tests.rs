@@ -119,6 +119,21 @@ fn a_narrower_nose_is_ahead_of_the_part_that_engages() {
     assert!(mate.nose_m < CLOSE, "{mate:?}");
 }
 
+/// The spring overlaps the plug by 0.2 mm, more than the plug can move.
+#[test]
+fn a_spring_on_one_side_is_left_out_of_the_play() {
+    let spring = block([1.45, 0.0], [0.3, 0.6], [1.0, 2.0]);
+    let socket = [hole([6.0, 5.0], [3.2, 2.2], 4.0), spring].concat();
+    close(&found(&peg([3.0, 2.0]), &socket, 5).0, [0.0, 0.0, 2.0], [0.2, 0.2]);
+}
+
+/// A press fit has no walls that could be springs.
+#[test]
+fn a_press_fit_has_little_play() {
+    let (mate, _) = found(&peg([3.0, 2.0]), &hole([6.0, 5.0], [2.92, 2.2], 4.0), 5);
+    assert!(mate.play_m.iter().all(|play| *play < 0.5 * MM), "{mate:?}");
+}
+
 #[test]
 fn plug_goes_round_a_post() {
     let socket =

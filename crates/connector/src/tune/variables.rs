@@ -1,7 +1,6 @@
 //! Variables of the search for a strategy.
 
 use crate::body::ConvexBody;
-use crate::check::LEAST_TILT_DEG;
 use crate::seat;
 use input::InputError;
 use input::shipped::{LEVERS, PRIORS};
@@ -78,7 +77,6 @@ pub fn strategy_at(task: &Task, variables: &[SearchVariable], unit: &[f64]) -> (
         match variable.target {
             Target::Tilt => {
                 let tilt = variable.at(strategy.tilt / DEG, share, 0.1).clamp(0.0, MOST_TILT_DEG);
-                let tilt = if tilt < LEAST_TILT_DEG { 0.0 } else { tilt };
                 strategy.tilt = tilt * DEG;
                 changes.push(format!("tilt {tilt:.1}°"));
             }

@@ -1,4 +1,4 @@
-//! `validation.csv`, `accuracy.md` and the JSON of the command.
+//! `validation.csv` and `accuracy.md`.
 
 use super::{Agreement, COMPARISONS, DesignRow, TaskTable, deviation_percent};
 use input::units::N_PER_MM;

@@ -370,6 +370,29 @@ fn a_plug_starts_above_a_deep_lead_in() {
     let found = inserts(&folder, "recess", [plug, socket], [0.2, 0.2]);
     assert!(found["found"].to_string().contains("2.00 mm below the socket's top"), "{found}");
     assert_eq!(outcome(&folder, "recess", "0.7"), "inserted");
+    // A sheet counts depths from the top, which can be measured.
+    let text = folder.read("recess.toml");
+    let depth = text.split("[success]").nth(1).and_then(|rest| rest.split("depth_mm = ").nth(1));
+    let depth: f64 = depth.unwrap().lines().next().unwrap().parse().unwrap();
+    let [task, sheet] = ["recess.toml", "sheet.html"].map(|name| folder.word(name));
+    optimize(&["measure", "sheet", "--task", &task, "--finger", "10,0", "--out", &sheet])
+        .succeeds();
+    let inserted = format!("at least {:.1} mm below the socket's top", depth + 2.0);
+    assert!(folder.read("sheet.html").contains(&inserted), "{inserted}");
+}
+
+/// A key without a slot in the socket stops the plug after 2 mm.
+#[test]
+fn a_plug_that_stops_early_is_warned_of() {
+    let plug = vec![
+        block([-3.5, 3.5], [-8.0, 8.0], [0.0, 12.0]),
+        block([3.5, 4.5], [3.0, 5.0], [2.0, 12.0]),
+        block([-5.0, 5.0], [-9.5, 9.5], [12.0, 30.0]),
+    ];
+    let mut socket = frame([14.0, 24.0], [7.2, 16.2], [-12.0, 0.0]);
+    socket.push(block([-7.0, 7.0], [-12.0, 12.0], [-14.0, -12.0]));
+    let found = imported(&Studies::new(), "keyed", [plug, socket]).json()["found"].to_string();
+    assert!(found.contains("warning only a small part of the plug engages"), "{found}");
 }
 
 /// A spring that the plug would push aside is listed, drawn, and out of the way.

@@ -205,10 +205,11 @@ pub fn draft(name: &str, size: &Dimensions, like: Option<&Task>) -> Result<Task,
     if held.length < least {
         return Err(format!(
             "{option}: is {} mm long; the pads are {} mm high and must stay outside of the socket, so \
-             at least {:.1} mm are needed",
+             at least {:.1} mm are needed{}",
             shown(held.length / MM),
             Pad::PUBLISHED.height / MM,
-            least / MM
+            least / MM,
+            if body.is_none() { "; or give the part that is held as --body" } else { "" }
         ));
     }
     (task.opening, task.socket) = housing(size, floor);

@@ -43,6 +43,9 @@ pub fn page(task: &Task, name: &str, fingers: &[(f64, f64)], pictures: &[Picture
 fn instructions(task: &Task, pictures: &[Picture]) -> Markup {
     let [x, y, z] = task.strategy.start.map(|place| format!("{:.1}", place / MM));
     let (depth, tilt) = (task.success.depth / MM, task.success.tilt / DEG);
+    // z = 0 is below the top of a socket with a recess.
+    let corners = task.socket.iter().flat_map(|part| part.solid.corners());
+    let top = corners.map(|corner| corner.z / MM).fold(0.0, f64::max);
     html! {
         h1 { "Measuring sheet: " (task.name) }
         p { (task.description) }
@@ -63,7 +66,7 @@ fn instructions(task: &Task, pictures: &[Picture]) -> Markup {
                  "start or between two neighbours; at least 8 attempts. That start is the end." }
         }
         h2 { "What counts as inserted" }
-        p { "At rest after the push the tip is at least " (format!("{depth:.1}")) " mm below the socket's top, the plug leans by "
+        p { "At rest after the push the tip is at least " (format!("{:.1}", depth + top)) " mm below the socket's top, the plug leans by "
             "at most " (format!("{tilt:.1}")) "°, and both fingers still hold it. Write + for inserted, else the class:" }
         div.pictures { @for picture in pictures { (outcome_figure(picture)) } }
     }

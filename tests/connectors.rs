@@ -344,16 +344,24 @@ fn depths_count_from_the_opening_of_a_plug_with_a_nose() {
     for offset_mm in ["-0.7", "0.7"] {
         assert_eq!(outcome(&folder, "nosed", offset_mm), "inserted", "{offset_mm}");
     }
-    // The approach must not end inside of the opening, where nothing blocks the plug.
-    let text = folder.read("nosed.toml");
+    begins_inside(&folder, "nosed", 3.0);
+}
+
+/// Asserts that a start this much lower, mm, lets the approach end inside of the socket, and that the check names the
+/// lowest start above it, as imported.
+fn begins_inside(folder: &Studies, name: &str, lower_mm: f64) {
+    let text = folder.read(&format!("{name}.toml"));
     let at = text.find("start_mm = [").unwrap();
     let start = text[at..].lines().next().unwrap();
     let z: f64 = start.trim_end_matches(']').rsplit(", ").next().unwrap().parse().unwrap();
-    let low = start.replace(&format!("{z}]"), &format!("{}]", z - 3.0));
+    let low = start.replace(&format!("{z:.1}]"), &format!("{:.1}]", z - lower_mm));
     let inside = folder.file("inside.toml", text.replace(start, &low));
     let checked = optimize(&["task", "check", &inside]);
     checked.fails(2, &["1 problem"]);
-    assert!(checked.stdout.contains("`approach` ends inside of the socket"), "{}", checked.stdout);
+    let right = format!("right: z = {z} mm at least");
+    for words in ["`approach` ends inside of the socket", &right] {
+        assert!(checked.stdout.contains(words), "{words}: {}", checked.stdout);
+    }
 }
 
 /// A recess of 2 mm: the plug is guided below it, and starts above all of the socket.
@@ -370,6 +378,7 @@ fn a_plug_starts_above_a_deep_lead_in() {
     let found = inserts(&folder, "recess", [plug, socket], [0.2, 0.2]);
     assert!(found["found"].to_string().contains("2.00 mm below the socket's top"), "{found}");
     assert_eq!(outcome(&folder, "recess", "0.7"), "inserted");
+    begins_inside(&folder, "recess", 4.0);
     // A sheet counts depths from the top, which can be measured.
     let text = folder.read("recess.toml");
     let depth = text.split("[success]").nth(1).and_then(|rest| rest.split("depth_mm = ").nth(1));

@@ -100,8 +100,8 @@ fn enclosed(case: &TaskBodies, way: &[Waypoint]) -> Option<Problem> {
     if !sides.into_iter().flatten().all(blocked) {
         return None;
     }
-    let z = last.edge.z;
-    let correct = way[0].tcp.z + AIR - z;
+    let (z, [_, top]) = (last.edge.z, case.socket.extent(2));
+    let correct = way[0].tcp.z + top.max(0.0) + AIR - z;
     Some(Problem::new(
         "strategy.start_mm",
         format!("`{}` ends inside of the socket, with the tip at z = {} mm", last.name, mm(z)),

@@ -130,9 +130,9 @@ fn each_draw_under_a_cell_is_another_cell() {
         let numbers = format!("value = 1.0\nsd = {sd}\nlow = 0.2\nhigh = 5.0");
         row("modulus", "finger.stiffness", "factor", &numbers, true)
     };
+    let line = "evaluate --task usb --density 20 --direction 10 --engine fake --json";
     let ranges = |sd: f64| {
         let file = folder.file("cell.toml", cell(&modulus(sd)));
-        let line = "evaluate --task usb --density 20 --direction 10 --engine fake --json";
         let found = optimize_line(&format!("{line} --uncertainty {file}")).json();
         assert_eq!(found["success_rate"], 1.0, "every start is the nominal one");
         let ranges = found["robust_ranges_mm"].as_array().unwrap().clone();
@@ -141,4 +141,12 @@ fn each_draw_under_a_cell_is_another_cell() {
     let (differ, all) = ranges(0.4);
     assert!(differ > all / 2 && all == 12, "{differ} of {all}");
     assert_eq!(ranges(0.0).0, 0);
+    let firm_mm = |sd: f64| {
+        let file = folder.file("cell.toml", cell(&modulus(sd)));
+        let bands =
+            optimize_line(&format!("{line} --repeat 6 --cell {file}")).json()["bands"].take();
+        let [from, to] = ["firm_negative_mm", "firm_positive_mm"].map(|key| bands[key].as_f64());
+        to.unwrap() - from.unwrap()
+    };
+    assert!(firm_mm(0.4) < firm_mm(0.0) - 0.15, "{} and {}", firm_mm(0.4), firm_mm(0.0));
 }

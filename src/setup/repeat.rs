@@ -6,7 +6,6 @@ use crate::failure::Failure;
 use insertion::evaluation::OffsetStep;
 use insertion::evaluation::evaluator::Scenario;
 use insertion::evaluation::robustness::repeat::{Band, Bands, Repeats};
-use insertion::trial::Grasp;
 use serde::{Serialize, Serializer};
 use serde_json::json;
 use std::sync::atomic::AtomicBool;
@@ -14,7 +13,8 @@ use std::sync::atomic::AtomicBool;
 /// Number and seed of repeats with small variations of friction, start and step.
 #[derive(Debug, Clone, Copy, clap::Args)]
 pub struct RepeatRequest {
-    /// Repeat N times with friction varied within 10 %, start within 0.02 mm, and half the step in every other one
+    /// Repeat N times with friction varied within 10 %, start within 0.02 mm, half the step in every other one, and a
+    /// cell's numbers drawn
     #[arg(id = "repeat", long = "repeat", value_name = "N", required = false,
           value_parser = clap::value_parser!(u32).range(2..=10_000))]
     pub count: u32,
@@ -39,11 +39,9 @@ impl RepeatRequest {
         stop: &AtomicBool,
         measure: impl Fn(&Repeats) -> T,
     ) -> Result<T, Failure> {
-        let rig = |factor| setup.evaluator.rig(scenario, taught, factor).map_err(Failure::input);
-        let rigs = [rig(1.0)?, rig(0.5)?];
-        let grasp = Grasp { stop, ..Grasp::of(&scenario.finger) };
-        let repeats = Repeats::new(rigs.each_ref().map(|rig| &**rig), grasp, self.seed, self.count);
-        let measured = measure(&repeats);
+        let (evaluator, repeats) = (&setup.evaluator, (self.seed, self.count));
+        let measured = evaluator.repeated(scenario, taught, repeats, stop, measure);
+        let measured = measured.map_err(Failure::input)?;
         not_stopped(stop)?;
         Ok(measured)
     }

@@ -23,6 +23,7 @@ use crate::trial::{Grasp, Rig};
 use input::numbers::DESIGN;
 use input::units::N_PER_MM;
 use parameters::{Parameter, numbers};
+use rayon::prelude::*;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
@@ -240,11 +241,39 @@ impl Evaluator {
         if measured.window.nominal != Outcome::Inserted {
             return Ok(FirmResult::default());
         }
-        let rig = |factor| self.rig(scenario, measured.taught, factor);
-        let (whole, half) = (rig(1.0)?, rig(0.5)?);
-        let grasp = Grasp { stop, ..Grasp::of(&scenario.finger) };
-        let repeats = Repeats::new([&*whole, &*half], grasp, seed, firm::REPEATS);
-        Ok(firm::measure(&repeats, &measured.window))
+        self.repeated(scenario, measured.taught, (seed, firm::REPEATS), stop, |repeats| {
+            firm::measure(repeats, &measured.window)
+        })
+    }
+
+    /// Calls `measure` with `count` repeats of a scenario from this taught start, every other one at half the time
+    /// step. In a cell each repeat has its own draw of the cell's parameters, the same for all designs, and its own
+    /// taught start. The result is invalid once `stop` is set.
+    pub fn repeated<T>(
+        &self,
+        scenario: &Scenario,
+        taught: Option<OffsetStep>,
+        (seed, count): (u64, u32),
+        stop: &AtomicBool,
+        measure: impl FnOnce(&Repeats) -> T,
+    ) -> Result<T, RigError> {
+        let drawn = |cell: &Priors| -> Vec<Scenario> {
+            let draws = parameters::draws(&cell.parameters, seed, count).into_iter();
+            // A draw with which the task cannot exist, such as a plug wider than its opening, is no possible cell.
+            draws.filter_map(|values| self.in_cell(scenario, cell, &values).ok()).collect()
+        };
+        let scenarios = self.cell.as_ref().map_or_else(Vec::new, drawn);
+        let started = |one: Scenario| self.taught(&one, stop).map(|taught| (one, taught));
+        let started: Result<Vec<_>, RigError> = scenarios.into_par_iter().map(started).collect();
+        let started = Some(started?).filter(|all| !all.is_empty());
+        let started = started.unwrap_or_else(|| vec![(scenario.clone(), taught); 2]);
+        let rig = |(index, (one, shift)): (usize, &(Scenario, Option<OffsetStep>))| {
+            let rig = self.rig(one, *shift, [1.0, 0.5][index % 2])?;
+            Ok((rig, Grasp { stop, ..Grasp::of(&one.finger) }))
+        };
+        let rigs: Vec<_> = started.iter().enumerate().map(rig).collect::<Result<_, RigError>>()?;
+        let rigs: Vec<_> = rigs.iter().map(|(rig, grasp)| (&**rig, *grasp)).collect();
+        Ok(measure(&Repeats::new(&rigs, seed, count)))
     }
 
     /// Evaluates a design on every task with `measure`.

@@ -96,7 +96,7 @@ mod tests {
     fn the_firm_window_is_the_innermost_of_the_repeats() {
         let (rig, finger) = (FakeRig::default(), finger(3.0, 20.0));
         let window = evaluate(&rig, &finger, Search::Walk).window;
-        let repeats = Repeats::new([&rig, &rig], Grasp::of(&finger), 0, 100);
+        let repeats = Repeats::new(&[(&rig, Grasp::of(&finger))], 0, 100);
         let found = measure(&repeats, &window);
         let firm = found.window.unwrap();
         assert!((-31..=-30).contains(&firm.negative_steps), "{firm:?}");

@@ -1,4 +1,4 @@
-//! Repeats of a trial under small random changes of friction and start, at two time steps.
+//! Repeats of a trial under small random changes of friction and start.
 
 use crate::evaluation::tolerance;
 use crate::evaluation::{OffsetStep, Window, grid_mm};
@@ -30,18 +30,19 @@ pub struct Repeats<'a> {
 }
 
 impl<'a> Repeats<'a> {
-    /// Grasps `count` times with the friction varied by up to 10 % and the start by up to 0.02 mm (uniform), in the two
-    /// rigs alternately: the first has the production time step, the second half of it.
-    pub fn new(rigs: [&'a dyn Rig; 2], grasp: Grasp<'a>, seed: u64, count: u32) -> Self {
+    /// Grasps `count` times with the friction varied by up to 10 % and the start by up to 0.02 mm (uniform), with the
+    /// given rigs and grasps in turn; at least one is required.
+    pub fn new(rigs: &[(&'a dyn Rig, Grasp<'a>)], seed: u64, count: u32) -> Self {
         let run = |index: u32| {
             let mut random = stream(seed, u64::from(index), PURPOSE);
             let mut around = |half_width: f64| half_width * random.random_range(-1.0..1.0);
             let [friction_finger, friction_socket] = [(); 2].map(|()| 1.0 + around(FRICTION_SHARE));
             let conditions = Conditions { friction_finger, friction_socket, ..Conditions::NOMINAL };
-            let rig = rigs[index as usize % rigs.len()];
+            let (rig, grasp) = rigs[index as usize % rigs.len()];
             (rig.grasp(Grasp { conditions, ..grasp }), around(START_SHIFT))
         };
-        Repeats { runs: (0..count).into_par_iter().map(run).collect(), stop: grasp.stop }
+        let stop = rigs[0].1.stop;
+        Repeats { runs: (0..count).into_par_iter().map(run).collect(), stop }
     }
 
     /// Returns the outcome of each repeat with the start shifted by an additional `offset`, m.
@@ -157,7 +158,7 @@ mod tests {
     #[test]
     fn the_bands_are_as_wide_as_in_the_closed_form() {
         let rig = FakeRig::default();
-        let repeats = Repeats::new([&rig, &rig], Grasp::of(&finger(3.0, 20.0)), 7, 200);
+        let repeats = Repeats::new(&[(&rig, Grasp::of(&finger(3.0, 20.0)))], 7, 200);
         let window = tolerance::evaluate(&rig, &finger(3.0, 20.0), Search::Walk).window;
         let bands = repeats.bands(&window, &|_| ());
         let below = bands.negative.width_mm().unwrap();
@@ -175,7 +176,7 @@ mod tests {
     fn repeats_are_a_function_of_the_seed() {
         let rig = FakeRig::default();
         let grasp = Grasp::of(&finger(3.0, 20.0));
-        let of = |seed| Repeats::new([&rig, &rig], grasp, seed, 60).outcomes(-3.33 * MM);
+        let of = |seed| Repeats::new(&[(&rig, grasp)], seed, 60).outcomes(-3.33 * MM);
         assert_eq!(of(1), of(1));
         assert_ne!(of(1), of(2));
         let inserted = of(1).iter().filter(|&&outcome| outcome == Outcome::Inserted).count();

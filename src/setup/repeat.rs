@@ -40,7 +40,8 @@ impl RepeatRequest {
         measure: impl Fn(&Repeats) -> T,
     ) -> Result<T, Failure> {
         let (evaluator, repeats) = (&setup.evaluator, (self.seed, self.count));
-        let measured = evaluator.repeated(scenario, taught, repeats, stop, measure);
+        let started = evaluator.drawn(scenario, taught, repeats, stop).map_err(Failure::input)?;
+        let measured = evaluator.repeated(&started, repeats, stop, measure);
         let measured = measured.map_err(Failure::input)?;
         not_stopped(stop)?;
         Ok(measured)

@@ -241,37 +241,51 @@ impl Evaluator {
         if measured.window.nominal != Outcome::Inserted {
             return Ok(FirmResult::default());
         }
-        self.repeated(scenario, measured.taught, (seed, firm::REPEATS), stop, |repeats| {
+        let started = [(scenario.clone(), measured.taught)];
+        self.repeated(&started, (seed, firm::REPEATS), stop, |repeats| {
             firm::measure(repeats, &measured.window)
         })
     }
 
-    /// Calls `measure` with `count` repeats of a scenario from this taught start, every other one at half the time
-    /// step. In a cell each repeat has its own draw of the cell's parameters, the same for all designs, and its own
-    /// taught start. The result is invalid once `stop` is set.
-    pub fn repeated<T>(
+    /// Returns a scenario with `count` draws of the cell's parameters, the same for all designs, each with its own
+    /// taught start. Without a cell returns the scenario with the given taught start. The result is invalid once `stop`
+    /// is set.
+    pub fn drawn(
         &self,
         scenario: &Scenario,
         taught: Option<OffsetStep>,
         (seed, count): (u64, u32),
         stop: &AtomicBool,
-        measure: impl FnOnce(&Repeats) -> T,
-    ) -> Result<T, RigError> {
+    ) -> Result<Vec<(Scenario, Option<OffsetStep>)>, RigError> {
         let drawn = |cell: &Priors| -> Vec<Scenario> {
             let draws = parameters::draws(&cell.parameters, seed, count).into_iter();
             // A draw with which the task cannot exist, such as a plug wider than its opening, is no possible cell.
             draws.filter_map(|values| self.in_cell(scenario, cell, &values).ok()).collect()
         };
         let scenarios = self.cell.as_ref().map_or_else(Vec::new, drawn);
+        if scenarios.is_empty() {
+            return Ok(vec![(scenario.clone(), taught)]);
+        }
         let started = |one: Scenario| self.taught(&one, stop).map(|taught| (one, taught));
-        let started: Result<Vec<_>, RigError> = scenarios.into_par_iter().map(started).collect();
-        let started = Some(started?).filter(|all| !all.is_empty());
-        let started = started.unwrap_or_else(|| vec![(scenario.clone(), taught); 2]);
+        scenarios.into_par_iter().map(started).collect()
+    }
+
+    /// Calls `measure` with `count` repeats of scenarios from their taught starts, in turn, every other one at half the
+    /// time step.
+    pub fn repeated<T>(
+        &self,
+        started: &[(Scenario, Option<OffsetStep>)],
+        (seed, count): (u64, u32),
+        stop: &AtomicBool,
+        measure: impl FnOnce(&Repeats) -> T,
+    ) -> Result<T, RigError> {
+        // A single scenario has both steps.
+        let started = started.iter().cycle().take(started.len().max(2)).enumerate();
         let rig = |(index, (one, shift)): (usize, &(Scenario, Option<OffsetStep>))| {
             let rig = self.rig(one, *shift, [1.0, 0.5][index % 2])?;
             Ok((rig, Grasp { stop, ..Grasp::of(&one.finger) }))
         };
-        let rigs: Vec<_> = started.iter().enumerate().map(rig).collect::<Result<_, RigError>>()?;
+        let rigs: Vec<_> = started.map(rig).collect::<Result<_, RigError>>()?;
         let rigs: Vec<_> = rigs.iter().map(|(rig, grasp)| (&**rig, *grasp)).collect();
         Ok(measure(&Repeats::new(&rigs, seed, count)))
     }

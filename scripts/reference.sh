@@ -106,14 +106,14 @@ windows() {
 }
 
 validation() {
-    "$lab" validate --out "$reference/validation" > /dev/null
+    scripts/validate.py "$optimize" "$reference/validation"
     figures "$reference/validation"
     cut -d, -f1-4,10,16 "$reference/validation/validation.csv" > data/simulated_ranges.csv
     record windows "$reference"/validation/*.{csv,svg} "$reference/validation/accuracy.md"
 }
 
 validation-ur5e() {
-    "$lab" validate --robot ur5e --out "$reference/validation-ur5e" > /dev/null
+    scripts/validate.py "$optimize" "$reference/validation-ur5e" --robot ur5e
     record windows "$reference"/validation-ur5e/*.{csv,svg} "$reference/validation-ur5e/accuracy.md"
 }
 

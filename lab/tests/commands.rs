@@ -21,7 +21,7 @@ fn an_engine_agrees_with_itself_in_the_cross_check() {
 
 #[test]
 fn every_help_shows_an_example() {
-    for command in ["check", "cross-check", "validate"] {
+    for command in ["check", "cross-check"] {
         lab(&[command, "--help"]).says(&[&format!("Example: lab {command}")]);
     }
 }

@@ -4,6 +4,7 @@ use super::*;
 use crate::compare::pairs::WindowPair;
 use input::shipped::TASKS;
 use insertion::evaluation::OffsetStep;
+use insertion::outcome::FailureClass;
 use insertion::stiffness::{designs, representative_designs};
 use insertion::trial::fake::FakeRig;
 

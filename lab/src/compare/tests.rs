@@ -16,7 +16,7 @@ pub(super) fn window(steps: [OffsetStep; 2], ends: [FailureClass; 2]) -> Window 
 }
 
 /// Returns a setting of this name with the fake engine.
-pub(super) fn setting(name: &str, search: Search) -> Setting {
+fn setting(name: &str, search: Search) -> Setting {
     Setting { name: name.into(), rig: Arc::new(FakeRig::default()), search }
 }
 

@@ -4,7 +4,7 @@
 #
 #     scripts/reference.sh                          all parts except those of the last line
 #     scripts/reference.sh validation               one part
-#     scripts/reference.sh landscapes settled identify peers prints loop   the parts omitted by default
+#     scripts/reference.sh landscapes settled peers loop   the parts omitted by default
 #
 # Landscapes are recorded functions for benchmarking optimizers, not figures of the current
 # model: if they change, all of results/reference/optimizers.md must be regenerated. Peers
@@ -17,8 +17,6 @@ parts="stiffness finger shapes bench levers check windows validation validation-
 cargo build --release
 optimize=${OPTIMIZE:-target/release/optimize}
 lab=${LAB:-target/release/lab}
-# Folder of the programs in lab/src/bin.
-programs=$(dirname "$lab")
 reference=results/reference
 # The landscapes for comparing optimizers.
 recorded="usb ket8 ket12 rj45 finger6 codesign6"
@@ -108,14 +106,14 @@ windows() {
 }
 
 validation() {
-    "$lab" validate --out "$reference/validation" > /dev/null
+    scripts/validate.py "$optimize" "$reference/validation"
     figures "$reference/validation"
     cut -d, -f1-4,10,16 "$reference/validation/validation.csv" > data/simulated_ranges.csv
     record windows "$reference"/validation/*.{csv,svg} "$reference/validation/accuracy.md"
 }
 
 validation-ur5e() {
-    "$lab" validate --robot ur5e --out "$reference/validation-ur5e" > /dev/null
+    scripts/validate.py "$optimize" "$reference/validation-ur5e" --robot ur5e
     record windows "$reference"/validation-ur5e/*.{csv,svg} "$reference/validation-ur5e/accuracy.md"
 }
 
@@ -275,22 +273,6 @@ settled() {
     record studies "$file"
 }
 
-# Identification of hidden cells in MuJoCo from their logs. Takes over an hour; needs `lab` with the feature mujoco.
-identify() {
-    local folder="$reference/identify"
-    cargo build --release -p lab --features mujoco
-    "$programs/hidden_cells" --cells 11 30 --out "$folder/cores" --logs "$work/logs"
-    record windows "$folder"/cores/*
-}
-
-# Prints to the best finger on synthetic benches. Takes half an hour of processor time, most of it for simulations.
-prints() {
-    local folder="$reference/bench/prints"
-    "$programs/prints" --benches 1 64 --out "$folder/tuned" --cache "$work/cache"
-    "$programs/prints" --benches 65 128 --out "$folder/held-out" --cache "$work/cache"
-    record bench "$folder"/*/*.csv
-}
-
 # Gain of the loop of study, print, measurement and identification in hidden cells.
 loop() {
     local cells=() seed
@@ -320,8 +302,8 @@ peers() {
 }
 
 for part in ${*:-$parts}; do
-    case " $parts landscapes settled identify peers prints loop " in
+    case " $parts landscapes settled peers loop " in
         *" $part "*) echo "== $part" >&2; "$part" ;;
-        *) echo "unknown part $part; available: $parts landscapes settled identify peers prints loop" >&2; exit 2 ;;
+        *) echo "unknown part $part; available: $parts landscapes settled peers loop" >&2; exit 2 ;;
     esac
 done

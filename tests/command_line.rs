@@ -180,23 +180,6 @@ fn the_short_help_is_a_screen_and_the_long_one_has_every_option_below_a_heading(
 }
 
 #[test]
-fn help_is_wrapped_and_true_of_each_command() {
-    for command in finger_opt::commands::COMMANDS {
-        let help = optimize(&[command.path, &["--help"]].concat());
-        let long = help.succeeds().lines().find(|line| line.chars().count() > 100);
-        assert_eq!(long, None, "{:?}", command.path);
-        // These take several tasks; these can take more than two seconds.
-        let words = help.stdout.split_whitespace().collect::<Vec<_>>().join(" ");
-        let several = matches!(command.path, ["study" | "calibrate"]);
-        let told = words.contains("a task file; several separated by commas");
-        assert_eq!(told, several, "{:?}", command.path);
-        let slow =
-            matches!(command.path, ["evaluate"] | ["task", "new" | "import" | "check" | "tune"]);
-        assert!(!slow || words.contains("--quiet Show no progress"), "{:?}", command.path);
-    }
-}
-
-#[test]
 fn the_project_file_gives_defaults_that_options_precede() {
     let studies = Studies::new();
     let folder = |name: &str| studies.dir(name);
@@ -474,12 +457,7 @@ fn a_scene_is_exported_for_mujoco_and_the_arm_is_refused() {
 }
 
 #[test]
-fn every_help_shows_an_example_and_the_shell_and_man_are_served() {
-    let commands = "resume finger report evaluate trial stiffness compare sensitivity export ask-tell \
-                    tasks completions man";
-    for command in commands.split(' ') {
-        optimize(&[command, "--help"]).says(&[&format!("Example: optimize {command}")]);
-    }
+fn the_shell_and_man_are_served_and_the_version_names_the_sources() {
     for shell in ["bash", "zsh", "fish"] {
         optimize(&["completions", shell]).says(&["optimize"]);
     }

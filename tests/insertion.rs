@@ -1,12 +1,16 @@
 //! The contact simulation on the four shipped tasks: does the physics hold, not the code.
 
 use crate::common::shipped::{finger, rig, robot, task};
+use crate::common::{read, root};
 use contact::direct::Direct;
 use contact::rapier::Rapier;
 use contact::scene::{
     Body, BodyId, Friction, Geom, Inertia, Joint, Motion, Pose, Scene, Shape, Springs,
 };
 use contact::{Engine, World};
+use finger_opt::command::parse;
+use finger_opt::commands::evaluate;
+use finger_opt::context::Context;
 use finray::printed::PrintedFinger;
 use input::shipped::{FINGERS, STIFFNESS, Shipped, TASKS, UNCERTAINTIES};
 use input::units::{DEG, MM};
@@ -24,8 +28,9 @@ use insertion::task::finger::Coupling;
 use insertion::task::{PadTorsion, Task};
 use insertion::trial::cell;
 use insertion::trial::run::EngineRig;
-use insertion::trial::{Conditions, Grasp, PhaseEnd, Rig, Trial, picture};
+use insertion::trial::{Conditions, Grasp, NEVER, PhaseEnd, Rig, Trial, picture};
 use nalgebra::Vector3;
+use rayon::prelude::*;
 
 /// A shipped task on the robot `servo` in the engine `direct`.
 fn direct(name: &str) -> EngineRig {
@@ -53,6 +58,46 @@ fn a_round_key_that_meets_the_rim_at_speed_inserts_whatever_the_step() {
             assert_eq!(end, Outcome::Inserted, "{offset_mm} mm, {step_s} s");
         }
     }
+}
+
+/// Windows of three fingers on each task; `scripts/reference.sh validation` simulates all 44.
+#[test]
+fn the_windows_are_the_committed_ones() {
+    let table = read(&root("results/reference/validation/validation.csv"));
+    let lines: Vec<&str> = table.lines().skip(1).collect();
+    let designs = stiffness::representative_designs().into_iter();
+    let designs: Vec<String> = designs.map(|design| design.design.to_string()).collect();
+    let changed: Vec<String> = lines
+        .into_par_iter()
+        .filter(|line| designs.iter().any(|design| line.split(',').nth(1) == Some(design)))
+        .filter_map(|line| {
+            let cells: Vec<&str> = line.split(',').collect();
+            let [task, _, density, direction, assembly, compliance, ..] = cells[..] else {
+                panic!("{line}")
+            };
+            let finger = ["--density", density, "--direction", direction];
+            let stiffness =
+                ["--stiffness-assembly", assembly, "--stiffness-compliance", compliance];
+            let words = ["--task", task, "--walk", "--no-ribs"];
+            let request: evaluate::Request =
+                parse([&words[..], &finger, &stiffness].concat()).ok().unwrap();
+            let window =
+                request.evaluated(&Context::silent(&NEVER)).ok().unwrap().evaluation.window;
+            let [below, above] = [window.end_negative, window.end_positive]
+                .map(|end| end.unwrap().failure().unwrap());
+            let (low, high, range) =
+                (window.negative_mm(), window.positive_mm(), window.range_mm());
+            let found =
+                format!("{},{low},{high},{range:.1},{below},{above}", window.nominal.word());
+            (found != cells[6..12].join(",")).then(|| format!("{line}: now {found}"))
+        })
+        .collect();
+    assert!(
+        changed.is_empty(),
+        "if physics was changed on purpose: scripts/reference.sh validation, mend \
+         docs/notes/calibration.md, and say in the commit what moved them.\n{}",
+        changed.join("\n")
+    );
 }
 
 #[test]

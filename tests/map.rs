@@ -1,4 +1,4 @@
-//! Capture maps of the contact simulation: against the window, their mirror images and a closed form.
+//! Capture maps of the contact simulation: against the window and their mirror images.
 
 use crate::common::shipped::{self, rig, task};
 use analysis::map::{Axes, CaptureMap, Plane};
@@ -9,10 +9,6 @@ use insertion::space::Design;
 use insertion::task::{Solid, Task};
 use insertion::trial::Grasp;
 use insertion::trial::run::EngineRig;
-use std::ops::Range;
-
-/// A key whose parts are boxes.
-const KET8: &str = include_str!("../tasks/ket8.toml");
 
 fn finger() -> Finger {
     shipped::finger(1.2, 52.4)
@@ -77,59 +73,4 @@ fn a_map_holds_the_window_and_its_mirror_image_is_that_of_the_mirrored_task() {
         // Rounding is not mirrored.
         assert!(differ <= 4, "mirrored along {axis}: {differ} places differ");
     }
-}
-
-/// A square peg that is pushed straight down slides in from wherever its edge meets the chamfer.
-#[test]
-fn a_square_peg_is_captured_as_far_as_clearance_and_chamfer_reach() {
-    let (clearance_mm, chamfer_mm) = (0.15, 1.0);
-    let rig = rig(peg(clearance_mm, chamfer_mm), "servo");
-    let map = map(&rig);
-    let reach = clearance_mm / 2.0 + chamfer_mm;
-    for y in -8..=8 {
-        for x in -8..=8 {
-            let at = [y, x].map(|step| f64::from(step) * 0.25);
-            let expected = at.iter().all(|error| error.abs() < reach);
-            assert_eq!(inserts(&map, at), expected, "{at:?} mm");
-        }
-    }
-}
-
-/// A square peg of 8 mm, upright above its hole, whose rim is chamfered.
-fn peg(clearance_mm: f64, chamfer_mm: f64) -> Task {
-    let text = KET8;
-    let [head, grip, strategy, success] =
-        ["name", "[grip]", "[strategy]", "[success]"].map(|key| text.find(key).unwrap());
-    let section = |range: Range<usize>| &text[range];
-    let half = 4.0 + clearance_mm / 2.0;
-    let wall = |x: [f64; 2], y: [f64; 2], edge: &str| {
-        format!(
-            "[[socket.part]]\nname = \"wall {edge}\"\nshape = \"box\"\nx_mm = {x:?}\ny_mm = {y:?}\n\
-             z_mm = [-34.0, 0.0]\nedges = [{{ at = \"{edge}+z\", chamfer_mm = {chamfer_mm} }}]\n"
-        )
-    };
-    let walls = [
-        wall([-40.0, 40.0], [-40.0, -half], "+y"),
-        wall([-40.0, 40.0], [half, 40.0], "-y"),
-        wall([-40.0, -half], [-half, half], "+x"),
-        wall([half, 40.0], [-half, half], "-x"),
-    ];
-    let phase = |stage: &str, down_mm: f64| {
-        format!(
-            "[[strategy.phase]]\nname = \"{stage}\"\nstage = \"{stage}\"\nspeed_mm_per_s = 100.0\n\
-             move_mm = [0.0, 0.0, -{down_mm:?}]\nmotion = \"duration\"\nsettle_s = 0.03\n"
-        )
-    };
-    let socket = text.find("[socket]").unwrap();
-    let plug = section(head..socket).replace("[-3.5, 3.5]", "[-4.0, 4.0]");
-    let opening = format!("opening_x_mm = [-{half}, {half}]\nopening_y_mm = [-{half}, {half}]\n");
-    let task = format!(
-        "{plug}[socket]\n{opening}{}{}[strategy]\ntilt_deg = 0.0\nstart_mm = [0.0, 0.0, 51.0]\n{}{}{}",
-        walls.concat(),
-        section(grip..strategy),
-        phase("approach", 3.3),
-        phase("assembly", 28.0),
-        section(success..text.len())
-    );
-    Task::parse(&task, "peg").unwrap()
 }

@@ -1,16 +1,16 @@
 //! `lab check`: compares an engine with closed-form solutions, or its windows with those at half the step or by another
 //! search.
 
-use crate::compare::{Setting, TaskSettings, pairs};
-use crate::validate::{Fingers, search_name, tasks};
+use crate::compare::{Setting, TaskSettings, pairs, tasks};
 use crate::{Failure, print};
-use clap::Args;
+use clap::{Args, ValueEnum};
 use contact::Engine;
 use finger_opt::setup::files;
 use finger_opt::setup::request::DEFAULT_ROBOT;
 use insertion::evaluation::OffsetStep;
 use insertion::evaluation::tolerance::Search;
 use insertion::robot::Robot;
+use insertion::stiffness::{Measurement, designs, representative_designs};
 use insertion::task::Task;
 use insertion::trial::engine::EngineKind;
 use insertion::trial::run::EngineRig;
@@ -18,6 +18,24 @@ use std::sync::Arc;
 
 /// Largest accepted shift of a window's end at half the time step, in grid steps of 0.1 mm.
 const ALLOWED_STEPS: OffsetStep = 1;
+
+/// Selection of measured fingers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Fingers {
+    /// All 11
+    All,
+    /// Those of lowest, middle and highest compliance stiffness
+    Three,
+}
+
+impl Fingers {
+    fn designs(self) -> Vec<Measurement> {
+        match self {
+            Fingers::All => designs(),
+            Fingers::Three => representative_designs(),
+        }
+    }
+}
 
 /// Compare the contact engine with analytic results.
 #[derive(Debug, Args)]
@@ -87,9 +105,9 @@ fn steps(task: Task, robot: &Robot, engine: Box<dyn Engine>) -> Result<TaskSetti
 /// Returns the settings of a task with the exhaustive and with the coarse-to-fine search.
 fn searches(task: Task, robot: &Robot, engine: Box<dyn Engine>) -> Result<TaskSettings, Failure> {
     let rig = Arc::new(EngineRig::new(task.clone(), robot, engine).map_err(Failure::input)?);
-    let setting =
-        |search| Setting { name: search_name(search).to_owned(), rig: rig.clone(), search };
-    Ok(TaskSettings { task, settings: [Search::Walk, Search::Strides].map(setting) })
+    let setting = |(name, search)| Setting { name: String::from(name), rig: rig.clone(), search };
+    let settings = [("walk", Search::Walk), ("strides", Search::Strides)].map(setting);
+    Ok(TaskSettings { task, settings })
 }
 
 fn verdict(checks: &str, failed: usize, all: usize) -> Result<(), Failure> {

@@ -1,13 +1,13 @@
 //! `lab cross-check`: agreement of two engines on the outcomes of trials.
 
-use crate::compare::{Setting, TaskSettings, engines};
-use crate::validate::{Fingers, tasks};
+use crate::compare::{Setting, TaskSettings, engines, tasks};
 use crate::{Failure, print};
 use clap::Args;
 use finger_opt::setup::files;
 use finger_opt::setup::request::DEFAULT_ROBOT;
 use insertion::evaluation::tolerance::Search;
 use insertion::finger::model::FingerSource;
+use insertion::stiffness::designs_by_rank;
 use insertion::task::Task;
 use insertion::trial::engine::EngineKind;
 
@@ -48,10 +48,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let tasks = tasks(&arguments.task)?.into_iter().map(settings);
     let tasks = tasks.collect::<Result<Vec<_>, Failure>>()?;
-    // Without the one of median stiffness.
-    let mut designs = Fingers::Three.designs();
-    designs.remove(1);
-    let check = engines::run(&tasks, &designs, arguments.reduced);
+    let check = engines::run(&tasks, &designs_by_rank([0, 10]), arguments.reduced);
     print(&engines::text(&check, names))?;
     match check.passed() {
         true => Ok(()),

@@ -1,4 +1,4 @@
-//! `lab`: verification of the models by analytic checks, other engines and published tables.
+//! `lab`: verification of the models by analytic checks and other engines.
 #![forbid(unsafe_code)]
 // These macros panic if the stream is closed; `finger_opt::terminal` prints instead.
 #![deny(clippy::print_stdout, clippy::print_stderr)]
@@ -7,14 +7,13 @@
 mod check;
 mod compare;
 mod cross_check;
-mod validate;
 
 use clap::{Parser, Subcommand};
 use finger_opt::failure::Failure;
 use finger_opt::terminal::{print, say};
 use std::process::ExitCode;
 
-/// Checks the models behind `optimize`: against closed formulas, other engines and published tables.
+/// Checks the models behind `optimize`: against closed formulas and other engines.
 ///
 /// Exit codes: 0 done, 1 failed while running or a check failed, 2 bad usage or bad input file.
 #[derive(Debug, Parser)]
@@ -35,15 +34,12 @@ enum Command {
     Check(check::Arguments),
     #[command(after_help = "Example: lab cross-check --against mujoco --reduced")]
     CrossCheck(cross_check::Arguments),
-    #[command(after_help = "Example: lab validate --task ket8 --strides")]
-    Validate(validate::Arguments),
 }
 
 fn main() -> ExitCode {
     let done = match &Cli::parse().command {
         Command::Check(arguments) => check::run(arguments),
         Command::CrossCheck(arguments) => cross_check::run(arguments),
-        Command::Validate(arguments) => validate::run(arguments),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

@@ -19,13 +19,6 @@ fn an_engine_agrees_with_itself_in_the_cross_check() {
     assert!(alike.is_some_and(|count| count.parse::<usize>().unwrap() > 20), "{}", ran.stdout);
 }
 
-#[test]
-fn every_help_shows_an_example() {
-    for command in ["check", "cross-check", "validate"] {
-        lab(&[command, "--help"]).says(&[&format!("Example: lab {command}")]);
-    }
-}
-
 /// The softest finger on usb is excepted: its positive end depends on the step (docs/notes/simulation.md, "Step size").
 #[test]
 fn windows_on_half_the_step_are_the_same() {

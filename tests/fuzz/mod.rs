@@ -86,13 +86,3 @@ fn nothing_that_is_read_makes_it_panic_hang_or_fill_the_memory() {
     println!("cases          {:>17}, {} failed", counts.values().sum::<u64>(), failures.len());
     assert!(failures.is_empty(), "{}", failures.join("\n\n"));
 }
-
-/// A name that a mutation made is a file in the harness's own folder, not in the project.
-#[test]
-fn what_a_case_writes_stays_in_the_folder_of_the_harness() {
-    let name = "written_by_the_harness.xml";
-    let words = "export mjcf --task usb --density 20 --direction 10 --out";
-    process::run(&words.split(' ').chain([name]).collect::<Vec<_>>(), b"").unwrap();
-    assert!(process::folder().join(name).exists());
-    assert!(!std::path::Path::new(name).exists());
-}

@@ -1,7 +1,10 @@
 //! Logs of simulated cells with a fault each: the checks report its likely cause, and nothing for logs without a fault.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use calibration::identify::log::{Run, of_samples};
+use ask_tell::normal::StandardNormal;
+use ask_tell::stream::stream;
+use calibration::identify::curves::accelerations;
+use calibration::identify::log::{Log, Run, of_samples};
 use calibration::identify::question::Identification;
 use calibration::identify::read;
 use finray::printed::PrintedFinger;
@@ -17,6 +20,8 @@ use insertion::space::Design;
 use insertion::trial::engine::EngineKind;
 use insertion::trial::{Grasp, NEVER};
 use insertion::{stiffness, surrogate};
+use nalgebra::Vector3;
+use rand::RngExt;
 use rayon::prelude::*;
 
 /// True parameters of each cell and starts of its attempts, from the reference results.
@@ -32,6 +37,11 @@ const HIDDEN: [(&str, &str); 5] = [
 
 /// Mass below the force sensor, kg.
 const TOOL_KG: f64 = 1.0;
+/// Standard deviations along each axis of a typical force sensor, N: noise of a sample, bias, and linear drift until
+/// the end of a log.
+const NOISE_N: f64 = 0.5;
+const BIAS_N: f64 = 1.0;
+const DRIFT_N: f64 = 1.0;
 
 /// A log as a table: a row for each sample.
 type Table = Vec<Vec<f64>>;
@@ -115,12 +125,27 @@ fn recorded(evaluator: &Evaluator, cell: u64) -> Vec<Recorded> {
                 }
             };
             let mut log = of_samples("a.csv", &samples).unwrap();
-            log.add_sensor_errors(TOOL_KG, cell, all.len() as u64);
+            add_sensor_errors(&mut log, cell, all.len() as u64);
             let (design, offset_mm) = (infill.clone(), start.unwrap_or(0.0));
             all.push(Recorded { design, offset_mm, outcome, text: log.csv() });
         }
     }
     all
+}
+
+/// Adds bias, drift, noise and the inertial force of the tool to a log, from the random stream `number` of `seed`.
+fn add_sensor_errors(log: &mut Log, seed: u64, number: u64) {
+    let mut random = stream(seed, number, "sensor");
+    let mut normal =
+        |sd: f64| Vector3::from_fn(|_, _| sd * random.sample::<f64, _>(StandardNormal));
+    let (bias, drift) = (normal(BIAS_N), normal(DRIFT_N));
+    let positions: Vec<_> = log.samples.iter().map(|sample| sample.tcp.position).collect();
+    let accelerations = accelerations(&positions, 1);
+    let last = (accelerations.len() - 1) as f64;
+    for (i, sample) in log.samples.iter_mut().enumerate() {
+        let part = i as f64 / last;
+        sample.force += bias + part * drift + normal(NOISE_N) - TOOL_KG * accelerations[i];
+    }
 }
 
 /// Changes a log's table; the columns are t, x, y, z, tilt, fx, fy, fz, target x, y and z.

@@ -1,17 +1,18 @@
-//! Comparison of tolerance windows: of the same fingers with another search, step or engine, and with the published
-//! ones.
+//! Comparison of tolerance windows: of the same fingers with another search, step or engine.
 
 pub mod engines;
 pub mod pairs;
-pub mod published;
 
 #[cfg(test)]
 mod tests;
 
+use finger_opt::failure::Failure;
+use finger_opt::setup::task::read_task;
+use input::shipped::TASKS;
 use insertion::evaluation::tolerance::{self, Search};
 use insertion::evaluation::{Evaluation, Window};
 use insertion::finger::Finger;
-use insertion::outcome::{FailureClass, Outcome};
+use insertion::outcome::Outcome;
 use insertion::stiffness::Measurement;
 use insertion::task::Task;
 use insertion::task::finger::FingerModel;
@@ -74,13 +75,16 @@ pub fn each<T: Send>(
     pairs.into_par_iter().map(one).collect()
 }
 
-/// Returns the failure classes at the negative and the positive end; `None` without a window or if the trial there has
-/// no class.
-fn failures(window: &Window) -> [Option<FailureClass>; 2] {
-    [window.end_negative, window.end_positive].map(|end| match (window.nominal, end) {
-        (Outcome::Inserted, Some(Outcome::Failed(class))) => Some(class),
-        _ => None,
-    })
+/// Reads the task with this name, or for `all` the tasks of the paper.
+///
+/// # Errors
+/// If it cannot be read.
+pub fn tasks(name: &str) -> Result<Vec<Task>, Failure> {
+    let names = match name {
+        "all" => TASKS.iter().map(|shipped| shipped.name).collect(),
+        name => vec![name],
+    };
+    names.into_iter().map(|name| Ok(read_task(name)?.task)).collect()
 }
 
 /// Formats a window as in `-1.4 to +5.8`, mm; `none` if the nominal start does not insert.

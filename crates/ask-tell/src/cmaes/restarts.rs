@@ -93,8 +93,8 @@ mod tests {
     use super::super::stop::Tolerances;
     use super::*;
 
-    /// Returns the best value, and the populations of all runs but the last.
-    fn minimise(f: fn(&[f64]) -> f64, generations: usize) -> (f64, Vec<usize>) {
+    /// Returns the populations of all runs but the last.
+    fn populations(f: fn(&[f64]) -> f64, generations: usize) -> Vec<usize> {
         let start = StartBox {
             low: vec![-4.0; 2],
             high: vec![4.0; 2],
@@ -104,28 +104,21 @@ mod tests {
             tolerances: Tolerances::default(),
         };
         let mut cma = Restarts::new(start, 1);
-        let (mut best, mut populations) = (f64::INFINITY, Vec::new());
+        let mut populations = Vec::new();
         for _ in 0..generations {
             let tell: Vec<_> =
                 cma.ask().into_iter().map(|x| Solution { value: f(&x), x }).collect();
-            best = tell.iter().map(|s| s.value).fold(best, f64::min);
             cma.tell(&tell);
             if cma.runs > populations.len() as u64 {
                 populations.push(tell.len());
             }
         }
-        (best, populations)
-    }
-
-    #[test]
-    fn the_sphere_is_minimised_and_its_run_ends() {
-        let (best, runs) = minimise(|x| x.iter().map(|v| v * v).sum(), 200);
-        assert!(best < 1e-10 && !runs.is_empty(), "{best} {runs:?}");
+        populations
     }
 
     #[test]
     fn large_populations_double_and_share_the_budget_with_small_ones() {
-        let (_, runs) = minimise(|x| libm::sin(x[0]) + libm::cos(x[1]), 2000);
+        let runs = populations(|x| libm::sin(x[0]) + libm::cos(x[1]), 2000);
         let large: Vec<usize> = runs.iter().copied().filter(|l| *l >= 12).collect();
         assert!(large.len() >= 2 && runs.len() > large.len(), "{runs:?}");
         assert!(large.windows(2).any(|pair| pair[1] == 2 * pair[0]), "{runs:?}");

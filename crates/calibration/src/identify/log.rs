@@ -1,15 +1,11 @@
 //! Log of one attempt or probe: commanded and measured TCP, and the force on the tool.
 
-use super::curves::accelerations;
-use ask_tell::normal::StandardNormal;
-use ask_tell::stream::stream;
 use input::units::{DEG, MM};
 use input::{InputError, Place};
 use insertion::outcome::Outcome;
 use insertion::space::Design;
 use insertion::trial::{Sample, Tcp};
 use nalgebra::Vector3;
-use rand::RngExt;
 use std::fmt::Write as _;
 
 /// Smallest number of samples: 0.1 s at 500 Hz.
@@ -18,12 +14,6 @@ pub const MIN_SAMPLES: usize = 50;
 pub const MAX_SAMPLES: usize = 1_000_000;
 /// Longest duration of a log, s. It bounds the number of points after interpolation at regular times.
 pub const MAX_DURATION_S: f64 = 600.0;
-
-/// Standard deviations along each axis of a typical force sensor, N: noise of a sample, bias, and linear drift until the
-/// end of a log.
-const NOISE_N: f64 = 0.5;
-const BIAS_N: f64 = 1.0;
-const DRIFT_N: f64 = 1.0;
 
 /// Required columns: time, TCP and force on the tool, in the task's frame.
 pub const COLUMNS: [&str; 8] = ["t_s", "x_mm", "y_mm", "z_mm", "tilt_deg", "fx_n", "fy_n", "fz_n"];
@@ -124,22 +114,6 @@ impl Log {
         }
         text.push('\n');
         text
-    }
-
-    /// Adds the errors of a force sensor to the log of a perfect one with points `STEP_S` apart, from the random stream
-    /// `number` of `seed`: bias, drift, noise, and the inertial force of a tool below the sensor, kg.
-    pub fn add_sensor_errors(&mut self, tool_mass: f64, seed: u64, number: u64) {
-        let mut random = stream(seed, number, "sensor");
-        let mut normal =
-            |sd: f64| Vector3::from_fn(|_, _| sd * random.sample::<f64, _>(StandardNormal));
-        let (bias, drift) = (normal(BIAS_N), normal(DRIFT_N));
-        let positions: Vec<_> = self.samples.iter().map(|sample| sample.tcp.position).collect();
-        let accelerations = accelerations(&positions, 1);
-        let last = (accelerations.len() - 1) as f64;
-        for (i, LogSample { force, .. }) in self.samples.iter_mut().enumerate() {
-            let part = i as f64 / last;
-            *force += bias + part * drift + normal(NOISE_N) - tool_mass * accelerations[i];
-        }
     }
 }
 

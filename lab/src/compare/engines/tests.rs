@@ -2,11 +2,8 @@
 
 use super::*;
 use crate::compare::tests;
-use input::shipped::TASKS;
-use insertion::evaluation::tolerance::Search;
 use insertion::outcome::FailureClass;
 use insertion::stiffness::designs;
-use insertion::task::Task;
 use insertion::task::finger::FingerModel;
 
 fn window(negative: OffsetStep, positive: OffsetStep) -> Window {
@@ -23,25 +20,6 @@ fn offsets_lie_about_both_ends_and_in_the_middle() {
     let narrow = offsets(&window(-3, 7), false);
     assert_eq!(narrow, [-43, -23, -13, -6, -4, -2, 0, 2, 4, 6, 8, 10, 17, 27, 47]);
     assert_eq!(offsets(&window(-60, 20), true), [-80, -50, -20, 10, 40]);
-}
-
-#[test]
-fn an_engine_agrees_with_itself() {
-    let setting = |name| tests::setting(name, Search::Strides);
-    let task = Task::parse(TASKS[0].text, TASKS[0].file).unwrap();
-    let tasks = [TaskSettings { task, settings: ["fake", "again"].map(setting) }];
-    let designs = [designs()[0], designs()[10]];
-    let check = run(&tasks, &designs, false);
-    assert_eq!((check.agreement(), check.end_difference_mm()), (1.0, Some(0.0)));
-    assert!(check.passed());
-    assert!(check.trials.iter().all(|pair| pair.tip_mm.is_none_or(|by| by == 0.0)));
-    // Starts inside the window insert, others do not.
-    let inside = |pair: &TrialPair| pair.from_end <= 0;
-    let inserts = |pair: &TrialPair| pair.outcomes[0] == Outcome::Inserted;
-    assert!(check.trials.iter().all(|pair| inside(pair) == inserts(pair)));
-    assert!(text(&check, ["fake", "again"]).contains("100.0 %"));
-    let reduced = run(&tasks, &designs, true);
-    assert_eq!((reduced.trials.len(), reduced.windows.len()), (10, 0));
 }
 
 #[test]

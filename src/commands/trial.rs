@@ -194,8 +194,9 @@ fn whole<S: Serializer>(trial: &Trial, serializer: S) -> Result<S::Ok, S::Error>
 }
 
 fn text(trial: &Trial) -> String {
+    let stop = trial.robot_stop().map_or(String::new(), |stop| format!("robot stop    {stop}\n"));
     let text = format!(
-        "outcome       {}\ndepth         {}\ntilt          {}\npeak force    {}\n\
+        "outcome       {}\n{stop}depth         {}\ntilt          {}\npeak force    {}\n\
          slip          {}\n",
         trial.outcome,
         number(trial.depth_mm, 2, "mm"),

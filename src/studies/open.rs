@@ -10,7 +10,7 @@ use crate::setup::run::RunRequest;
 use crate::setup::task::nominal_start;
 use ::report::answer::Answer;
 use ::report::answer::command::repair;
-use ::report::answer::words::outcome;
+use ::report::answer::words::{outcome, stop};
 use input::files::shell_word;
 use insertion::evaluation::evaluator::Evaluator;
 use insertion::evaluation::robustness::Plan;
@@ -90,7 +90,8 @@ impl OpenStudy {
                 && let (_, trial) = nominal_start(task, robot, *engine, &NEVER)?
                 && trial.outcome != Outcome::Inserted
             {
-                let (name, ends) = (&task.name, outcome(trial.outcome));
+                let name = &task.name;
+                let ends = outcome(trial.outcome) + &stop(trial.robot_stopped);
                 let (command, why) = repair(&record, self.study.dir(), place);
                 warn(&format!(
                     "{name}: with the medium finger the nominal start ends with {ends}; {command} {why}"

@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::setup::Setup;
 use insertion::task::StartRule;
 use insertion::trial::{Grasp, picture};
-use report::answer::words::{outcome, remedy};
+use report::answer::words::{outcome, remedy, stop as robot_stop};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use study::{StudyRecord, write_own_file};
@@ -34,6 +34,7 @@ pub(crate) fn check(
     let class = outcome(trial.outcome);
     let phase =
         trial.phases.last().map_or(String::new(), |phase| format!(" in phase {}", phase.name));
+    let phase = phase + &robot_stop(trial.robot_stopped);
     let label = format!("evaluation {} at the nominal start: {class}{phase}", nearest.index);
     let file = dir.join(PICTURE);
     write_own_file(&file, &picture::svg(&scenario.task, &scenario.finger.pad, &trial, &label))?;
@@ -49,6 +50,6 @@ pub(crate) fn check(
         trial.depth_mm,
         trial.tilt_deg,
         file.display(),
-        remedy(trial.outcome)
+        remedy(trial.outcome, trial.robot_stopped)
     )))
 }

@@ -90,12 +90,25 @@ pub struct Trial {
     pub peak_force_n: f64,
     /// Slip of the part in the grasp since the grasp, at the end, mm.
     pub slip_mm: f64,
+    /// Whether the robot ended the trial by a protective stop.
+    pub robot_stopped: bool,
     /// State at the end of each phase that was begun.
     pub phases: Vec<PhaseEnd>,
     /// Simulated time of the trial, s.
     pub simulated_s: f64,
     /// Whether the trial diverged at first and was repeated at half the step.
     pub retried: bool,
+}
+
+/// Cause of a protective stop of the robot.
+pub const STOP_CAUSE: &str = "a limit of its force or of a joint torque";
+
+impl Trial {
+    /// Returns the phase and the cause of a protective stop; `None` if the robot did not stop.
+    pub fn robot_stop(&self) -> Option<String> {
+        let phase = self.phases.last().map_or("grasp", |phase| &*phase.name);
+        self.robot_stopped.then(|| format!("in the phase `{phase}`, at {STOP_CAUSE}"))
+    }
 }
 
 /// Stop flag that is never set.

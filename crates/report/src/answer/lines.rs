@@ -11,6 +11,7 @@ use insertion::outcome::Outcome;
 use insertion::robot::Robot;
 use insertion::space::Variable;
 use insertion::surrogate::Prediction;
+use insertion::trial::STOP_CAUSE;
 use parameters::label;
 use std::iter;
 use study::{BenchPrediction, ByRibs, Recorded, StudyRecord};
@@ -61,7 +62,8 @@ pub fn simulated(answer: &Answer, found: &Recommended) -> Vec<Line> {
         let [below, above] = [window.end_negative, window.end_positive].map(words::end);
         let ends =
             line("ends", format!("{below} below, {above} above{}", words::on(config, task.name)));
-        iter::once(ends).chain(drawn(task.measured)).collect::<Vec<_>>()
+        let stops = stops(task.measured);
+        iter::once(ends).chain(stops).chain(drawn(task.measured)).collect::<Vec<_>>()
     };
     let tasks = found.design.tasks();
     let limits = config.constraints.iter().map(|c| format!("{} {}", c.measure, c.words(&tasks)));
@@ -345,15 +347,24 @@ pub fn accuracy(found: &BenchPrediction) -> Line {
 pub fn window(evaluation: &Evaluation) -> Vec<Line> {
     let window = &evaluation.window;
     if window.nominal != Outcome::Inserted {
-        let nominal = window.nominal.label();
-        return vec![line("window", format!("none: the nominal start ends with {nominal}"))];
+        let ends = format!("{}{}", window.nominal.label(), words::stop(evaluation.nominal_stop()));
+        return vec![line("window", format!("none: the nominal start ends with {ends}"))];
     }
     let end = |outcome: Option<Outcome>| outcome.map_or("limit of the search", Outcome::label);
     let [below, above] = [window.end_negative, window.end_positive].map(end);
-    vec![
+    [
         line("window", format!("{} mm", span(ends_mm(window)))),
         line("ends", format!("{below} below, {above} above")),
     ]
+    .into_iter()
+    .chain(stops(evaluation))
+    .collect()
+}
+
+/// Returns the number of trials that the robot ended by a protective stop; `None` if there are none.
+fn stops(Evaluation { robot_stops, trials, .. }: &Evaluation) -> Option<Line> {
+    let text = || format!("in {robot_stops} of {trials} trials, at {STOP_CAUSE}");
+    (*robot_stops > 0).then(|| line("robot stop", text()))
 }
 
 /// Returns the predicted stiffness, its uncertainty, and whether it is an extrapolation.
@@ -388,9 +399,11 @@ pub fn by_ribs(found: &ByRibs) -> Vec<Line> {
 }
 
 /// Returns range, window and taught start in words.
-fn tolerated(Evaluation { window, taught, .. }: &Evaluation) -> String {
+fn tolerated(found: &Evaluation) -> String {
+    let Evaluation { window, taught, .. } = found;
     if window.nominal != Outcome::Inserted {
-        return format!("none: its nominal start ends with {}", window.nominal.label());
+        let (nominal, stop) = (window.nominal.label(), words::stop(found.nominal_stop()));
+        return format!("none: its nominal start ends with {nominal}{stop}");
     }
     let start =
         taught.map_or(String::new(), |steps| format!(", start taught {:+.1}", grid_mm(steps)));

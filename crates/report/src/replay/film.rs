@@ -45,6 +45,8 @@ pub(super) fn data(film: &Film) -> Value {
     let points = |of: &dyn Fn(&Frame) -> &[ContactPoint]| -> Vec<Vec<f64>> {
         frames.iter().map(|frame| of(frame).iter().flat_map(contact).collect()).collect()
     };
+    let stop = trial.robot_stop().map_or(String::new(), |stop| format!("; robot stop {stop}"));
+    let outcome = trial.outcome.to_string() + &stop;
     let phases = trial.phases.iter().map(|p| (&*p.name, rounded(p.time_s, 4)));
     let mut trajectories = json!({
         "plug": poses(&|frame| frame.poses.plug),
@@ -59,7 +61,7 @@ pub(super) fn data(film: &Film) -> Value {
     }
     json!({
         "label": film.label,
-        "outcome": trial.outcome.to_string(),
+        "outcome": outcome,
         "kind": trial.outcome.word(),
         // Rounded like the times of the frames, so that it is not after the last one.
         "decided_s": rounded(recording.decided_s, 4),

@@ -6,12 +6,14 @@ pub mod numbers;
 mod place;
 pub mod shipped;
 pub mod units;
+pub mod wrong_unit;
 
 pub use place::{InputError, Place, Placed, RequestError};
 use serde::de::DeserializeOwned;
 use std::sync::atomic::{AtomicU64, Ordering};
 use toml::Spanned;
 use toml::de::DeTable;
+use wrong_unit::WrongUnit;
 
 /// Largest magnitude of a number in a file. A larger one is probably in a wrong unit, and could overflow in sums and
 /// products.
@@ -222,6 +224,15 @@ impl Check<'_> {
     ) -> Result<[f64; N], InputError> {
         values.iter().try_for_each(|&value| one(self, key, value).map(drop))?;
         Ok(values)
+    }
+
+    /// Checks that a value is in the unit of its key.
+    ///
+    /// # Errors
+    /// If it is `found` to be in another.
+    pub fn unit(&self, key: &str, found: Option<WrongUnit>) -> Result<(), InputError> {
+        let fail = |WrongUnit { problem, remedy }| self.fail(key, format!("{problem}; {remedy}"));
+        found.map_or(Ok(()), fail)
     }
 
     /// Checks that a value lies in -1e9 .. 1e9.

@@ -2,7 +2,7 @@
 
 use crate::arm::{Arm, ArmError, RawArm, ReducedArm};
 use input::units::read::n_per_mm;
-use input::{Check, Document, InputError};
+use input::{Check, Document, InputError, wrong_unit};
 use nalgebra::Vector3;
 use parameters::numbers;
 use serde::Deserialize;
@@ -74,12 +74,15 @@ impl Robot {
         let document = Document::parse(text, file)?;
         let Header { kind, name, description, stop_force } = document.read()?;
         numbers::check_file("robot", &document.read()?, file)?;
-        let own = document.without(&HEADER);
+        let (own, check) = (document.without(&HEADER), Check { file });
         let drive = match kind {
             Kind::Rigid => own.read().map(|Rigid {}| Drive::Ideal)?,
             Kind::Servo => Drive::Servo(own.read()?),
-            Kind::Arm => Drive::Arm(Box::new(own.read::<RawArm>()?.arm(Check { file })?)),
+            Kind::Arm => Drive::Arm(Box::new(own.read::<RawArm>()?.arm(check)?)),
         };
+        if let Drive::Servo(Servo { mass, .. }) = drive {
+            check.unit("mass_kg", wrong_unit::number("mass_kg", mass, MASS_KG))?;
+        }
         Ok(Robot { name, description, drive, stop_force })
     }
 
@@ -107,6 +110,9 @@ impl Robot {
         Ok(MountedRobot { flange, stop_force: self.stop_force })
     }
 }
+
+/// Range of the effective mass of wrist and gripper at the TCP, kg.
+const MASS_KG: [f64; 2] = [0.05, 100.0];
 
 /// Settling time of a servo, in time constants.
 const SETTLING_TIME_CONSTANTS: f64 = 5.0;
@@ -190,6 +196,19 @@ mod tests {
             assert!(error.starts_with(&format!("r.toml: {key}: ")), "{error}");
             assert!(error.contains(problem), "{key} = {value}: {error}");
         }
+        let heavy = servo.text.replace(line("mass_kg"), "mass_kg = 900");
+        refused(Robot::parse(&heavy, "r.toml"), &["mass_kg: 900 kg is more", "0.90 kg"]);
+        let arm = robot_file("ur5e");
+        let short = arm.text.replace(".0, ", "e-3, ").replace(".0]", "e-3]");
+        refused(Robot::parse(&short, "r.toml"), &["joint: all offset_mm together: 1."]);
+        let home = arm.text.replace("home_deg = [270.0, -90.0,", "home_deg = [1.57, -90.0,");
+        Robot::parse(&home, "r.toml").unwrap();
+        let home = arm.text.lines().map(|line| match line.starts_with("home_deg") {
+            true => "home_deg = [4.7, -1.6, -1.6, 4.7, 1.6, 0]",
+            false => line,
+        });
+        let home = home.collect::<Vec<_>>().join("\n");
+        refused(Robot::parse(&home, "r.toml"), &["home_deg: 4.7 degrees is less", "269.3 degrees"]);
         let heavy = robot_file("ur5e").text.replace("link_mass_kg = 3.7", "link_mass_kg = 3700");
         let problem = "joint \"shoulder pan\" link_mass_kg: is 3700";
         refused(Robot::parse(&heavy, "r.toml"), &[problem]);

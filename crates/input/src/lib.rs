@@ -10,9 +10,11 @@ pub mod wrong_unit;
 
 pub use place::{InputError, Place, Placed, RequestError};
 use serde::de::DeserializeOwned;
+use std::borrow::Cow;
+use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
 use toml::Spanned;
-use toml::de::DeTable;
+use toml::de::{DeTable, DeValue};
 use wrong_unit::WrongUnit;
 
 /// Largest magnitude of a number in a file. A larger one is probably in a wrong unit, and could overflow in sums and
@@ -24,6 +26,11 @@ const LONGEST_MM: f64 = 1000.0;
 /// Returns the error of a file with invalid TOML or an unexpected structure; `text` is that of the file, empty for a
 /// table without a text.
 pub fn syntax(file: &str, text: &str, error: &toml::de::Error) -> InputError {
+    let near = nearest_key(error.message(), &[]);
+    fault(file, text, error, near)
+}
+
+fn fault(file: &str, text: &str, error: &toml::de::Error, near: Option<&str>) -> InputError {
     let before = error.span().and_then(|span| text.get(..span.start));
     let line = before.map(|before| 1 + before.matches('\n').count());
     let shown = error.to_string();
@@ -33,18 +40,34 @@ pub fn syntax(file: &str, text: &str, error: &toml::de::Error) -> InputError {
         None => (shown.trim_end(), ""),
     };
     let place = Place { line, ..Place::file(file) }.key(key);
-    place.fault(problem.to_owned() + &suggestion(error.message()))
+    let hint = near.map_or(String::new(), |near| format!("; did you mean `{near}`?"));
+    place.fault(problem.to_owned() + &hint)
 }
 
-/// Returns a question that suggests the accepted word nearest to the unknown word of a parser's message; empty if none
-/// is near.
-fn suggestion(message: &str) -> String {
-    let mut words = message.split('`').skip(1).step_by(2);
-    let (Some(given), accepted) = (words.next(), words.collect::<Vec<_>>()) else {
-        return String::new();
+/// Returns the word nearest to the unknown word of a parser's message, of the accepted words and `more` words.
+fn nearest_key<'a>(message: &'a str, more: &[&'a str]) -> Option<&'a str> {
+    let mut words = message.strip_prefix("unknown ")?.split('`').skip(1).step_by(2);
+    let (given, accepted) = (words.next()?, words.chain(more.iter().copied()));
+    shipped::nearest(given, &accepted.collect::<Vec<_>>())
+}
+
+/// Renames the key at a position of the text, or removes it if it has no other name; returns whether it was found.
+fn rename(table: &mut DeTable<'_>, at: &Range<usize>, to: Option<&str>) -> bool {
+    fn within(value: &mut DeValue<'_>, at: &Range<usize>, to: Option<&str>) -> bool {
+        match value {
+            DeValue::Table(table) => rename(table, at, to),
+            DeValue::Array(items) => items.iter_mut().any(|item| within(item.get_mut(), at, to)),
+            _ => false,
+        }
+    }
+    let Some(key) = table.keys().find(|key| key.span() == *at).cloned() else {
+        return table.iter_mut().any(|(_, value)| within(value.get_mut(), at, to));
     };
-    let near = shipped::nearest(given, &accepted).filter(|_| message.starts_with("unknown "));
-    near.map(|near| format!("; did you mean `{near}`?")).unwrap_or_default()
+    let value = table.remove(&key);
+    if let (Some(to), Some(value)) = (to.filter(|to| !table.contains_key(*to)), value) {
+        table.insert(Spanned::new(key.span(), Cow::Owned(to.to_owned())), value);
+    }
+    true
 }
 
 /// Parsed TOML text from which typed values are read.
@@ -53,7 +76,12 @@ pub struct Document<'a> {
     text: &'a str,
     file: &'a str,
     tree: Spanned<DeTable<'a>>,
+    /// Keys of the file that were taken out of the tree.
+    taken: &'a [&'a str],
 }
+
+/// Largest number of faults that are reported at once.
+const MAX_FAULTS: usize = 10;
 
 /// Number of parsed texts.
 static PARSED: AtomicU64 = AtomicU64::new(0);
@@ -71,7 +99,7 @@ impl<'a> Document<'a> {
     pub fn parse(text: &'a str, file: &'a str) -> Result<Self, InputError> {
         PARSED.fetch_add(1, Ordering::Relaxed);
         let tree = DeTable::parse(text).map_err(|error| syntax(file, text, &error))?;
-        Ok(Document { text, file, tree })
+        Ok(Document { text, file, tree, taken: &[] })
     }
 
     /// Returns the file name, as passed to [`Document::parse`].
@@ -80,11 +108,11 @@ impl<'a> Document<'a> {
     }
 
     /// Returns the document without these top-level keys.
-    pub fn without(mut self, keys: &[&str]) -> Self {
+    pub fn without(mut self, keys: &'a [&'a str]) -> Self {
         for key in keys {
             self.tree.get_mut().remove(*key);
         }
-        self
+        Document { taken: keys, ..self }
     }
 
     /// Deserializes the whole document.
@@ -103,11 +131,34 @@ impl<'a> Document<'a> {
         Ok(value)
     }
 
+    /// Deserializes the tree; the error lists all unknown keys, and the first other fault.
     fn deserialize<T: DeserializeOwned>(&self) -> Result<T, InputError> {
-        T::deserialize(toml::de::Deserializer::from(self.tree.clone())).map_err(|mut error| {
+        let mut renamed = None;
+        let mut faults: Vec<InputError> = Vec::new();
+        while faults.len() < MAX_FAULTS {
+            let tree = renamed.as_ref().unwrap_or(&self.tree).clone();
+            let mut error = match T::deserialize(toml::de::Deserializer::from(tree)) {
+                Ok(value) if faults.is_empty() => return Ok(value),
+                Ok(_) => break,
+                Err(error) => error,
+            };
             error.set_input(Some(self.text));
-            syntax(self.file, self.text, &error)
-        })
+            let near = nearest_key(error.message(), self.taken);
+            faults.push(fault(self.file, self.text, &error, near));
+            // The next attempt reads the value under the nearest key, or without an unknown key that has none.
+            let key = error.message().strip_prefix("unknown field `");
+            let of_key = |at: &Range<usize>| key?.strip_prefix(self.text.get(at.clone())?);
+            let Some(at) = error.span().filter(|at| of_key(at).is_some()) else { break };
+            let to = near.filter(|near| !self.taken.contains(near));
+            let tree = renamed.get_or_insert_with(|| self.tree.clone()).get_mut();
+            if !rename(tree, &at, to) {
+                break;
+            }
+        }
+        faults.sort_by_key(|fault| fault.place.line);
+        let place = faults.first().map_or(Place::file(self.file), |fault| fault.place.clone());
+        let problems: Vec<_> = faults.into_iter().map(|fault| fault.problem).collect();
+        Err(place.fault(problems.join("\n")))
     }
 }
 
@@ -299,6 +350,36 @@ mod tests {
         assert!(text.ends_with("expected `plug_socket`; did you mean `plug_socket`?"), "{text}");
         let error = read::<Friction>("other = 0.3", "task.toml").unwrap_err().to_string();
         assert!(!error.contains("mean"), "{error}");
+    }
+
+    #[test]
+    fn all_unknown_keys_and_a_missing_one_are_reported_at_once() {
+        #[derive(Debug, serde::Deserialize)]
+        #[serde(deny_unknown_fields)]
+        #[expect(dead_code, reason = "only the names are read")]
+        struct Pair {
+            name: String,
+            friction: Vec<Friction>,
+            mass_g: f64,
+        }
+        let text =
+            "nam = \"a\"\nother = 1\n[[friction]]\nplug_socket = 1\n[[friction]]\nplug_sockt = 1";
+        let error = read::<Pair>(text, "task.toml").unwrap_err();
+        assert_eq!(error.place().line, Some(1));
+        let text = error.to_string();
+        let found: Vec<_> = text.lines().filter(|line| line.contains('`')).collect();
+        let expected = [
+            "unknown field `nam`",
+            "missing field `mass_g`",
+            "unknown field `other`",
+            "unknown field `plug_sockt`",
+        ];
+        let begin = |(line, start): (&&str, &str)| line.starts_with(start);
+        assert!(found.len() == 4 && found.iter().zip(expected).all(begin), "{text}");
+        assert!(text.contains("line 6") && text.contains("did you mean `name`?"), "{text}");
+        let document = Document::parse("kind = 1\nknd = 2\nplug_socket = 1", "t.toml").unwrap();
+        let error = document.without(&["kind"]).read::<Friction>().unwrap_err().to_string();
+        assert!(error.ends_with("did you mean `kind`?"), "{error}");
     }
 
     #[test]

@@ -72,14 +72,16 @@ impl Robot {
     /// If the text is not a robot file, or a value is out of range.
     pub fn parse(text: &str, file: &str) -> Result<Self, InputError> {
         let document = Document::parse(text, file)?;
-        let Header { kind, name, description, stop_force } = document.read()?;
+        let OfKind { kind } = document.read()?;
         numbers::check_file("robot", &document.read()?, file)?;
-        let (own, check) = (document.without(&HEADER), Check { file });
+        // Read before the header, one of whose keys may be misspelt.
+        let (own, check) = (document.clone().without(&HEADER), Check { file });
         let drive = match kind {
             Kind::Rigid => own.read().map(|Rigid {}| Drive::Ideal)?,
             Kind::Servo => Drive::Servo(own.read()?),
             Kind::Arm => Drive::Arm(Box::new(own.read::<RawArm>()?.arm(check)?)),
         };
+        let Header { name, description, stop_force } = document.read()?;
         if let Drive::Servo(Servo { mass, .. }) = drive {
             check.unit("mass_kg", wrong_unit::number("mass_kg", mass, MASS_KG))?;
         }
@@ -150,18 +152,23 @@ enum Kind {
     Arm,
 }
 
-/// Keys common to all robot files; the kind determines the others. Not a tagged enum, whose errors have no line
-/// number.
+/// Kind of a robot file, which determines its keys beside those of [`Header`]. Not a tagged enum, whose errors have no
+/// line number.
+#[derive(Deserialize)]
+struct OfKind {
+    kind: Kind,
+}
+
+/// Keys common to all robot files beside [`OfKind`].
 #[derive(Deserialize)]
 struct Header {
-    kind: Kind,
     name: String,
     description: String,
     #[serde(rename = "stop_force_n")]
     stop_force: f64,
 }
 
-/// Keys of [`Header`].
+/// Keys of [`OfKind`] and [`Header`].
 const HEADER: [&str; 4] = ["kind", "name", "description", "stop_force_n"];
 
 /// Keys of a rigid robot beside those of [`Header`].
@@ -196,6 +203,11 @@ mod tests {
             assert!(error.starts_with(&format!("r.toml: {key}: ")), "{error}");
             assert!(error.contains(problem), "{key} = {value}: {error}");
         }
+        let misspelt =
+            servo.text.replace("stop_force_n", "stop_forc_n").replace("mass_kg", "mas_kg");
+        let both =
+            ["line 10", "did you mean `mass_kg`?", "line 13", "did you mean `stop_force_n`?"];
+        refused(Robot::parse(&misspelt, "r.toml"), &both);
         let heavy = servo.text.replace(line("mass_kg"), "mass_kg = 900");
         refused(Robot::parse(&heavy, "r.toml"), &["mass_kg: 900 kg is more", "0.90 kg"]);
         let arm = robot_file("ur5e");

@@ -56,7 +56,7 @@ fn instructions(task: &Task, pictures: &[Picture]) -> Markup {
             "tilted by " (format!("{:.1}", task.strategy.tilt / DEG)) "°. Near there, teach a start from which the plug "
             "inserts three times out of three: this is 0. Shifts are along y, in which the jaws close; + is away from "
             "the wall that the search moves to. Keep grasp, speeds, plug and socket the same for all fingers." }
-        (probe())
+        (probe(task, top))
         h2 { "Which starts, in which order" }
         ol {
             li { "From 0 in steps of 0.5 mm to -, until two neighbouring starts fail; then the same to +." }
@@ -72,12 +72,24 @@ fn instructions(task: &Task, pictures: &[Picture]) -> Markup {
     }
 }
 
-/// Returns the instructions for the friction probe: the plug is pressed on a flat face and slides along it.
-fn probe() -> Markup {
+/// Returns the instructions for the friction probe: the plug is pressed on a flat face and slides along it. In a recess
+/// of this depth, mm, it cannot, so that a plate replaces the socket.
+fn probe(task: &Task, recess_mm: f64) -> Markup {
     let [stroke, speed] = [PROBE_STROKE, PROBE_SPEED].map(|length| length / MM);
+    let face = if recess_mm > 0.0 {
+        let y = task.plug.parts.iter().flat_map(|part| part.solid.corners()).map(|corner| corner.y);
+        let [low, high] = y.fold([0.0_f64; 2], |[low, high], y| [low.min(y), high.max(y)]);
+        let long_mm = stroke + (high - low) / MM;
+        format!(
+            "a flat plate of the socket's material, at least {long_mm:.0} mm long in y (the socket has a recess, \
+                 {recess_mm:.1} mm deep)"
+        )
+    } else {
+        "the flat face beside the opening".to_owned()
+    };
     html! {
         h2 { "First the probe, once with each finger" }
-        p { "Hold the plug upright over the flat face beside the opening. Start a log of time, force, pose and commanded "
+        p { "Hold the plug upright over " (face) ". Start a log of time, force, pose and commanded "
             "pose, 125 Hz or more, while the plug is in the air. Press it against the face with " (PROBE_FORCE) " N and slide "
             "it " (stroke) " mm along y, back and forth, " (PROBE_SLIDES / 2) " times, at " (speed) " mm/s. Stop if it catches. "
             "Lift it off, then end the log. Log each insertion, too: every log is a line of runs.csv (log, "

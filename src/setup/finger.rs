@@ -205,7 +205,7 @@ fn check(setup: &Setup, flag: &str, key: &str, value: f64) -> Result<(), Failure
         Some(parameter) if (parameter.low..=parameter.high).contains(&value) => {
             let radians = wrong_unit::angle(value, FRAC_PI_2, parameter.step);
             radians.filter(|_| key == DIRECTION_KEY).map_or(Ok(()), |radians| {
-                Err(Failure::usage(format!("{flag}: {} {}", radians.problem, radians.remedy)))
+                Err(Failure::usage(format!("{flag}: {}", radians.join(" "))))
             })
         }
         Some(parameter) => Err(Failure::usage(format!(

@@ -10,13 +10,13 @@ use crate::setup::run::RunRequest;
 use crate::setup::task::nominal_start;
 use ::report::answer::Answer;
 use ::report::answer::command::repair;
-use ::report::answer::words::{outcome, stop};
+use ::report::answer::words::outcome;
 use input::files::shell_word;
 use insertion::evaluation::evaluator::Evaluator;
 use insertion::evaluation::robustness::Plan;
 use insertion::evaluation::template::Template;
 use insertion::evaluation::tolerance::Search;
-use insertion::outcome::Outcome;
+use insertion::outcome::{Outcome, stop_words};
 use insertion::task::StartRule;
 use insertion::trial::NEVER;
 use parameters::label;
@@ -90,8 +90,8 @@ impl OpenStudy {
                 && let (_, trial) = nominal_start(task, robot, *engine, &NEVER)?
                 && trial.outcome != Outcome::Inserted
             {
+                let ends = outcome(trial.outcome) + stop_words(trial.robot_stopped);
                 let name = &task.name;
-                let ends = outcome(trial.outcome) + &stop(trial.robot_stopped);
                 let (command, why) = repair(&record, self.study.dir(), place);
                 warn(&format!(
                     "{name}: with the medium finger the nominal start ends with {ends}; {command} {why}"

@@ -3,9 +3,10 @@
 use crate::context::not_stopped;
 use crate::failure::Failure;
 use crate::setup::Setup;
+use insertion::outcome::stop_words;
 use insertion::task::StartRule;
 use insertion::trial::{Grasp, picture};
-use report::answer::words::{outcome, remedy, stop as robot_stop};
+use report::answer::words::{outcome, remedy};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use study::{StudyRecord, write_own_file};
@@ -31,10 +32,9 @@ pub(crate) fn check(
     let rig = evaluator.rig(&scenario, taught, 1.0).map_err(Failure::input)?;
     let trial = rig.grasp(Grasp { stop, ..Grasp::of(&scenario.finger) }).trial(0.0);
     not_stopped(stop)?;
-    let class = outcome(trial.outcome);
+    let class = outcome(trial.outcome) + stop_words(trial.robot_stopped);
     let phase =
         trial.phases.last().map_or(String::new(), |phase| format!(" in phase {}", phase.name));
-    let phase = phase + &robot_stop(trial.robot_stopped);
     let label = format!("evaluation {} at the nominal start: {class}{phase}", nearest.index);
     let file = dir.join(PICTURE);
     write_own_file(&file, &picture::svg(&scenario.task, &scenario.finger.pad, &trial, &label))?;

@@ -3,21 +3,15 @@
 use super::body::ConvexBody;
 use super::seat;
 use input::units::{DEG, MM};
-use insertion::outcome::{FailureClass, Outcome};
+use insertion::outcome::{FailureClass, Outcome, STOP_REMEDY};
 use insertion::task::{Stage, Task};
 use insertion::trial::{PhaseEnd, Trial};
 
 /// Explains the outcome of a trial in plain words, with advice.
 pub fn explain(task: &Task, trial: &Trial) -> String {
     let slip = format!("slip {:.1} mm, allowed {:.1}", trial.slip_mm, task.grip.slip_limit / MM);
-    if let Some(stop) = trial.robot_stop().filter(|_| trial.outcome != Outcome::Inserted) {
-        return format!(
-            "the robot stopped {stop}, at {:.0} N: lower speed_mm_per_s or preload_mm, or try a robot with a \
-             higher stop_force_n",
-            trial.peak_force_n
-        );
-    }
     match trial.outcome {
+        Outcome::Failed(_) if trial.robot_stopped => format!("the robot stopped: {STOP_REMEDY}"),
         Outcome::Inserted => format!(
             "inserted {:.1} mm deep, {:.1} degrees off; required: {:.1} mm and {:.1} degrees",
             trial.depth_mm,

@@ -10,11 +10,9 @@ pub mod wrong_unit;
 
 pub use place::{InputError, Place, Placed, RequestError};
 use serde::de::DeserializeOwned;
-use std::borrow::Cow;
-use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
 use toml::Spanned;
-use toml::de::{DeTable, DeValue};
+use toml::de::DeTable;
 use wrong_unit::WrongUnit;
 
 /// Largest magnitude of a number in a file. A larger one is probably in a wrong unit, and could overflow in sums and
@@ -51,25 +49,6 @@ fn nearest_key<'a>(message: &'a str, more: &[&'a str]) -> Option<&'a str> {
     shipped::nearest(given, &accepted.collect::<Vec<_>>())
 }
 
-/// Renames the key at a position of the text, or removes it if it has no other name; returns whether it was found.
-fn rename(table: &mut DeTable<'_>, at: &Range<usize>, to: Option<&str>) -> bool {
-    fn within(value: &mut DeValue<'_>, at: &Range<usize>, to: Option<&str>) -> bool {
-        match value {
-            DeValue::Table(table) => rename(table, at, to),
-            DeValue::Array(items) => items.iter_mut().any(|item| within(item.get_mut(), at, to)),
-            _ => false,
-        }
-    }
-    let Some(key) = table.keys().find(|key| key.span() == *at).cloned() else {
-        return table.iter_mut().any(|(_, value)| within(value.get_mut(), at, to));
-    };
-    let value = table.remove(&key);
-    if let (Some(to), Some(value)) = (to.filter(|to| !table.contains_key(*to)), value) {
-        table.insert(Spanned::new(key.span(), Cow::Owned(to.to_owned())), value);
-    }
-    true
-}
-
 /// Parsed TOML text from which typed values are read.
 #[derive(Debug, Clone)]
 pub struct Document<'a> {
@@ -80,8 +59,8 @@ pub struct Document<'a> {
     taken: &'a [&'a str],
 }
 
-/// Largest number of faults that are reported at once.
-const MAX_FAULTS: usize = 10;
+/// Largest number of unknown keys that are reported at once.
+const MAX_UNKNOWN: usize = 10;
 
 /// Number of parsed texts.
 static PARSED: AtomicU64 = AtomicU64::new(0);
@@ -121,7 +100,7 @@ impl<'a> Document<'a> {
     /// If the document does not have the structure of `T`, has a control character, or has a `name` that is empty or
     /// has several lines.
     pub fn read<T: DeserializeOwned>(&self) -> Result<T, InputError> {
-        let (value, table) = (self.deserialize()?, self.deserialize()?);
+        let (value, table) = (self.deserialize(MAX_UNKNOWN)?, self.deserialize(0)?);
         if let Some((key, problem)) = bad_text(&table) {
             return Check { file: self.file }.fail(&key, problem);
         }
@@ -131,34 +110,27 @@ impl<'a> Document<'a> {
         Ok(value)
     }
 
-    /// Deserializes the tree; the error lists all unknown keys, and the first other fault.
-    fn deserialize<T: DeserializeOwned>(&self) -> Result<T, InputError> {
-        let mut renamed = None;
-        let mut faults: Vec<InputError> = Vec::new();
-        while faults.len() < MAX_FAULTS {
-            let tree = renamed.as_ref().unwrap_or(&self.tree).clone();
-            let mut error = match T::deserialize(toml::de::Deserializer::from(tree)) {
-                Ok(value) if faults.is_empty() => return Ok(value),
-                Ok(_) => break,
-                Err(error) => error,
-            };
+    /// Deserializes the tree; the error lists up to `most` unknown keys, then the first other fault.
+    fn deserialize<T: DeserializeOwned>(&self, most: usize) -> Result<T, InputError> {
+        let read = T::deserialize(toml::de::Deserializer::from(self.tree.clone()));
+        read.map_err(|mut error| {
             error.set_input(Some(self.text));
             let near = nearest_key(error.message(), self.taken);
-            faults.push(fault(self.file, self.text, &error, near));
-            // The next attempt reads the value under the nearest key, or without an unknown key that has none.
-            let key = error.message().strip_prefix("unknown field `");
-            let of_key = |at: &Range<usize>| key?.strip_prefix(self.text.get(at.clone())?);
-            let Some(at) = error.span().filter(|at| of_key(at).is_some()) else { break };
-            let to = near.filter(|near| !self.taken.contains(near));
-            let tree = renamed.get_or_insert_with(|| self.tree.clone()).get_mut();
-            if !rename(tree, &at, to) {
-                break;
+            let mut found = fault(self.file, self.text, &error, near);
+            let rest = || {
+                let (at, mut text) = (error.span()?, self.text.to_owned());
+                let name = error.message().strip_prefix("unknown field `")?;
+                name.strip_prefix(text.get(at.clone())?)?;
+                // Reads on as if the key were the nearest one or, without one, its line a comment.
+                text.replace_range(at, near.unwrap_or("#"));
+                let document = Document::parse(&text, self.file).ok()?.without(self.taken);
+                document.deserialize::<T>(most.checked_sub(1)?).err()
+            };
+            if let Some(rest) = rest() {
+                found.problem += &format!("\n{}", rest.problem);
             }
-        }
-        faults.sort_by_key(|fault| fault.place.line);
-        let place = faults.first().map_or(Place::file(self.file), |fault| fault.place.clone());
-        let problems: Vec<_> = faults.into_iter().map(|fault| fault.problem).collect();
-        Err(place.fault(problems.join("\n")))
+            found
+        })
     }
 }
 
@@ -282,8 +254,7 @@ impl Check<'_> {
     /// # Errors
     /// If it is `found` to be in another.
     pub fn unit(&self, key: &str, found: Option<WrongUnit>) -> Result<(), InputError> {
-        let fail = |WrongUnit { problem, remedy }| self.fail(key, format!("{problem}; {remedy}"));
-        found.map_or(Ok(()), fail)
+        found.map_or(Ok(()), |found| self.fail(key, found.join("; ")))
     }
 
     /// Checks that a value lies in -1e9 .. 1e9.
@@ -365,18 +336,15 @@ mod tests {
         let text =
             "nam = \"a\"\nother = 1\n[[friction]]\nplug_socket = 1\n[[friction]]\nplug_sockt = 1";
         let error = read::<Pair>(text, "task.toml").unwrap_err();
-        assert_eq!(error.place().line, Some(1));
+        assert_eq!(error.place().line, Some(6));
         let text = error.to_string();
         let found: Vec<_> = text.lines().filter(|line| line.contains('`')).collect();
-        let expected = [
-            "unknown field `nam`",
-            "missing field `mass_g`",
-            "unknown field `other`",
-            "unknown field `plug_sockt`",
-        ];
-        let begin = |(line, start): (&&str, &str)| line.starts_with(start);
+        let expected = ["`plug_sockt`", "`nam`", "`other`", "`mass_g`"];
+        let begin = |(line, key): (&&str, &str)| {
+            line.split(" field ").nth(1).is_some_and(|of| of.starts_with(key))
+        };
         assert!(found.len() == 4 && found.iter().zip(expected).all(begin), "{text}");
-        assert!(text.contains("line 6") && text.contains("did you mean `name`?"), "{text}");
+        assert!(text.contains("line 1,") && text.contains("did you mean `name`?"), "{text}");
         let document = Document::parse("kind = 1\nknd = 2\nplug_socket = 1", "t.toml").unwrap();
         let error = document.without(&["kind"]).read::<Friction>().unwrap_err().to_string();
         assert!(error.ends_with("did you mean `kind`?"), "{error}");

@@ -2,20 +2,13 @@
 
 use crate::units::{DEG, without_unit};
 
-/// Number that is probably in a wrong unit.
-#[derive(Debug, Clone, PartialEq)]
-pub struct WrongUnit {
-    /// The number, and the bound that it violates.
-    pub problem: String,
-    /// Accepted values; the number in the expected unit, if its own unit can be guessed.
-    pub remedy: String,
-}
+/// Problem and remedy of a number that is probably in a wrong unit: the bound that it violates, and the accepted values.
+pub type WrongUnit = [String; 2];
 
 /// Returns the units mistaken for this one, and their size in it.
 fn mistaken(unit: &str) -> &'static [(&'static str, f64)] {
     match unit {
         " N" => &[("kN", 1000.0), ("grams-force", 9.81e-3)],
-        " kg" => &[("g", 0.001)],
         " mm/s" => &[("m/s", 1000.0)],
         _ => &[("metres", 1000.0), ("inches", 25.4), ("micrometres", 0.001), ("centimetres", 10.0)],
     }
@@ -30,7 +23,7 @@ pub fn number(key: &str, value: f64, [low, high]: [f64; 2]) -> Option<WrongUnit>
     let (size, limit) = if value < low { ("less", low) } else { ("more", high) };
     let shown = (value * 1e4).round() / 1e4;
     let problem = format!("{shown}{unit} is {size} than the plausible {limit}{unit}");
-    Some(WrongUnit { problem, remedy: remedy(unit, value, [low, high]) })
+    Some([problem, remedy(unit, value, [low, high])])
 }
 
 /// Returns advice on a number outside its range: the unit in which it is inside, or the range.
@@ -55,5 +48,5 @@ pub fn angle(degrees: f64, least: f64, step: f64) -> Option<WrongUnit> {
     let [degrees, least] = [degrees, least].map(|angle| (angle * 1e4).round() / 1e4);
     let problem = format!("{degrees} degrees is less than {least}: are these radians?");
     let remedy = format!("angles are in degrees: {degrees} rad is {:.1} degrees", degrees / DEG);
-    Some(WrongUnit { problem, remedy })
+    Some([problem, remedy])
 }

@@ -209,7 +209,10 @@ mod tests {
             ["line 10", "did you mean `mass_kg`?", "line 13", "did you mean `stop_force_n`?"];
         refused(Robot::parse(&misspelt, "r.toml"), &both);
         let heavy = servo.text.replace(line("mass_kg"), "mass_kg = 900");
-        refused(Robot::parse(&heavy, "r.toml"), &["mass_kg: 900 kg is more", "0.90 kg"]);
+        refused(
+            Robot::parse(&heavy, "r.toml"),
+            &["mass_kg: 900 kg is more", "between 0.05 and 100 kg"],
+        );
         let arm = robot_file("ur5e");
         let short = arm.text.replace(".0, ", "e-3, ").replace(".0]", "e-3]");
         refused(Robot::parse(&short, "r.toml"), &["joint: all offset_mm together: 1."]);

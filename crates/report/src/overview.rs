@@ -7,11 +7,11 @@ use super::page_files::{FilmPair, PageFiles};
 use super::printer::{self, recommended};
 use super::replay::{ENDS, pair_file, player};
 use super::{bar, explore};
-use crate::answer::words::{design, evaluated, on, outcome, remedy, stop};
+use crate::answer::words::{design, evaluated, on, outcome, remedy};
 use crate::answer::{Answer, Verdict, command, expectation, lines};
 use finray::export::sheet;
 use insertion::evaluation::{Evaluation, grid_mm};
-use insertion::outcome::{FailureClass, Outcome};
+use insertion::outcome::{FailureClass, Outcome, stop_words};
 use maud::{Markup, PreEscaped, html};
 use study::Recorded;
 
@@ -82,7 +82,7 @@ fn nominal(nearest: &Recorded, fails: Option<&Evaluation>, files: &PageFiles) ->
             @if let Some(fails) = fails {
                 p {
                     "Nearest to inserting: " (evaluated(nearest)) ". \
-                    Its nominal start ends with " b { (outcome(fails.window.nominal)) } (stop(fails.nominal_stop())) ". " (remedy(fails.window.nominal, fails.nominal_stop())) "."
+                    Its nominal start ends with " b { (outcome(fails.window.nominal)) } (stop_words(fails.nominal_stop())) ". " (remedy(fails.window.nominal, fails.nominal_stop())) "."
                 }
             }
             @if let Some(svg) = &files.nominal {

@@ -73,19 +73,13 @@ fn instructions(task: &Task, pictures: &[Picture]) -> Markup {
 }
 
 /// Returns the instructions for the friction probe: the plug is pressed on a flat face and slides along it. In a recess
-/// of this depth, mm, it cannot, so that a plate replaces the socket.
+/// of this depth, mm, it cannot: a plate with room for plug and stroke replaces the socket.
 fn probe(task: &Task, recess_mm: f64) -> Markup {
     let [stroke, speed] = [PROBE_STROKE, PROBE_SPEED].map(|length| length / MM);
-    let face = if recess_mm > 0.0 {
-        let y = task.plug.parts.iter().flat_map(|part| part.solid.corners()).map(|corner| corner.y);
-        let [low, high] = y.fold([0.0_f64; 2], |[low, high], y| [low.min(y), high.max(y)]);
-        let long_mm = stroke + (high - low) / MM;
-        format!(
-            "a flat plate of the socket's material, at least {long_mm:.0} mm long in y (the socket has a recess, \
-                 {recess_mm:.1} mm deep)"
-        )
-    } else {
-        "the flat face beside the opening".to_owned()
+    let long_mm = (stroke + (task.opening[1][1] - task.opening[1][0]) / MM).ceil();
+    let face = match recess_mm > 0.0 {
+        true => &format!("a flat plate of the socket's material, {long_mm} mm long or more in y"),
+        false => "the flat face beside the opening",
     };
     html! {
         h2 { "First the probe, once with each finger" }

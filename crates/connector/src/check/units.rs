@@ -79,7 +79,7 @@ pub(super) fn length(key: &str, value: f64, range_mm: [f64; 2]) -> Option<Proble
 }
 
 fn problem(key: &str, found: Option<WrongUnit>) -> Option<Problem> {
-    found.map(|WrongUnit { problem, remedy }| Problem::new(key, problem, remedy))
+    found.map(|[problem, remedy]| Problem::new(key, problem, remedy))
 }
 
 /// Checks that neither the plug nor the opening is so narrow that it must be in another unit.

@@ -18,8 +18,7 @@ use crate::task::geometry::Axis;
 use contact::scene::{Inertia, Pose};
 use input::units::read::{deg, mm};
 use input::units::{DEG, MM};
-use input::wrong_unit::{self, WrongUnit};
-use input::{Check, InputError};
+use input::{Check, InputError, wrong_unit};
 use nalgebra::{Point3, Translation3, Unit, UnitQuaternion, Vector3};
 use serde::Deserialize;
 use std::f64::consts::PI;
@@ -118,12 +117,12 @@ impl RawArm {
     /// Returns the arm after checking its units and that it has six joints.
     pub fn arm(self, check: Check<'_>) -> Result<Arm, InputError> {
         let reach = self.joint.iter().map(|joint| Vector3::from(joint.offset).norm()).sum::<f64>();
-        if let Some(WrongUnit { problem, remedy }) = wrong_unit::number("", reach / MM, REACH_MM) {
-            return check.fail("joint", format!("all offset_mm together: {problem}; {remedy}"));
-        }
-        let radians = self.home.map(|angle| wrong_unit::angle(angle / DEG, 2.0 * PI, 1.0));
+        check
+            .unit("joint: all offset_mm together", wrong_unit::number("", reach / MM, REACH_MM))?;
+        // Whole numbers are degrees.
+        let radians = |angle: f64| wrong_unit::angle(angle / DEG, 2.0 * PI, 1.0);
         if self.home.iter().all(|angle| angle.abs() < 2.0 * PI * DEG) {
-            check.unit("home_deg", radians.into_iter().flatten().next())?;
+            check.unit("home_deg", self.home.into_iter().find_map(radians))?;
         }
         let joints: Vec<Joint> = self.joint.into_iter().map(Joint::from).collect();
         let joints = <[Joint; JOINTS]>::try_from(joints).or_else(|joints| {

@@ -100,17 +100,6 @@ pub struct Trial {
     pub retried: bool,
 }
 
-/// Cause of a protective stop of the robot.
-pub const STOP_CAUSE: &str = "a limit of its force or of a joint torque";
-
-impl Trial {
-    /// Returns the phase and the cause of a protective stop; `None` if the robot did not stop.
-    pub fn robot_stop(&self) -> Option<String> {
-        let phase = self.phases.last().map_or("grasp", |phase| &*phase.name);
-        self.robot_stopped.then(|| format!("in the phase `{phase}`, at {STOP_CAUSE}"))
-    }
-}
-
 /// Stop flag that is never set.
 pub static NEVER: AtomicBool = AtomicBool::new(false);
 

@@ -7,11 +7,10 @@ use calibration::rank_correlation::RankCorrelation;
 use insertion::evaluation::objective::Measure;
 use insertion::evaluation::robustness::firm::REPEATS;
 use insertion::evaluation::{Evaluation, grid_mm};
-use insertion::outcome::Outcome;
+use insertion::outcome::{Outcome, stop_words};
 use insertion::robot::Robot;
 use insertion::space::Variable;
 use insertion::surrogate::Prediction;
-use insertion::trial::STOP_CAUSE;
 use parameters::label;
 use std::iter;
 use study::{BenchPrediction, ByRibs, Recorded, StudyRecord};
@@ -60,10 +59,9 @@ pub fn simulated(answer: &Answer, found: &Recommended) -> Vec<Line> {
     let of_task = |task: &OnTask| {
         let window = &task.measured.window;
         let [below, above] = [window.end_negative, window.end_positive].map(words::end);
-        let ends =
-            line("ends", format!("{below} below, {above} above{}", words::on(config, task.name)));
-        let stops = stops(task.measured);
-        iter::once(ends).chain(stops).chain(drawn(task.measured)).collect::<Vec<_>>()
+        let (on, stops) = (words::on(config, task.name), stops(task.measured));
+        let ends = line("ends", format!("{below} below, {above} above{on}{stops}"));
+        iter::once(ends).chain(drawn(task.measured)).collect::<Vec<_>>()
     };
     let tasks = found.design.tasks();
     let limits = config.constraints.iter().map(|c| format!("{} {}", c.measure, c.words(&tasks)));
@@ -347,24 +345,22 @@ pub fn accuracy(found: &BenchPrediction) -> Line {
 pub fn window(evaluation: &Evaluation) -> Vec<Line> {
     let window = &evaluation.window;
     if window.nominal != Outcome::Inserted {
-        let ends = format!("{}{}", window.nominal.label(), words::stop(evaluation.nominal_stop()));
-        return vec![line("window", format!("none: the nominal start ends with {ends}"))];
+        let (nominal, stop) = (window.nominal.label(), stop_words(evaluation.nominal_stop()));
+        let text = format!("none: the nominal start ends with {nominal}{stop}");
+        return vec![line("window", text)];
     }
     let end = |outcome: Option<Outcome>| outcome.map_or("limit of the search", Outcome::label);
     let [below, above] = [window.end_negative, window.end_positive].map(end);
-    [
+    vec![
         line("window", format!("{} mm", span(ends_mm(window)))),
-        line("ends", format!("{below} below, {above} above")),
+        line("ends", format!("{below} below, {above} above{}", stops(evaluation))),
     ]
-    .into_iter()
-    .chain(stops(evaluation))
-    .collect()
 }
 
-/// Returns the number of trials that the robot ended by a protective stop; `None` if there are none.
-fn stops(Evaluation { robot_stops, trials, .. }: &Evaluation) -> Option<Line> {
-    let text = || format!("in {robot_stops} of {trials} trials, at {STOP_CAUSE}");
-    (*robot_stops > 0).then(|| line("robot stop", text()))
+/// Returns the number of trials that a protective stop of the robot ended, in words; empty if there are none.
+fn stops(Evaluation { robot_stops, trials, .. }: &Evaluation) -> String {
+    let text = || format!("; robot stop in {robot_stops} of {trials} trials");
+    (*robot_stops > 0).then(text).unwrap_or_default()
 }
 
 /// Returns the predicted stiffness, its uncertainty, and whether it is an extrapolation.
@@ -402,7 +398,7 @@ pub fn by_ribs(found: &ByRibs) -> Vec<Line> {
 fn tolerated(found: &Evaluation) -> String {
     let Evaluation { window, taught, .. } = found;
     if window.nominal != Outcome::Inserted {
-        let (nominal, stop) = (window.nominal.label(), words::stop(found.nominal_stop()));
+        let (nominal, stop) = (window.nominal.label(), stop_words(found.nominal_stop()));
         return format!("none: its nominal start ends with {nominal}{stop}");
     }
     let start =

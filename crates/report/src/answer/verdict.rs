@@ -1,10 +1,11 @@
 //! Recommended action: headline and expected performance.
 
-use super::words::{design as finger, evaluated, interval, mm, outcome, span, stop};
+use super::words::{design as finger, evaluated, interval, mm, outcome, span};
 use super::{Answer, Recommended, Ties};
 use ask_tell::statistics::mean;
 use insertion::evaluation::Evaluation;
 use insertion::evaluation::objective::Measure;
+use insertion::outcome::stop_words;
 use insertion::space::Design;
 use study::{Recorded, StudyRecord, nearest};
 
@@ -149,7 +150,8 @@ pub fn expectation(answer: &Answer) -> String {
     }
     if let Verdict::NothingInserts { nearest, fails, .. } = &answer.verdict {
         let ends = |found: &&Evaluation| {
-            format!("ends with {}{}", outcome(found.window.nominal), stop(found.nominal_stop()))
+            let stop = stop_words(found.nominal_stop());
+            format!("ends with {}{stop}", outcome(found.window.nominal))
         };
         let fails = fails.as_ref().map_or("fails".to_owned(), ends);
         return format!(

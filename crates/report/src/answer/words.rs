@@ -3,10 +3,9 @@
 use input::units::N_PER_MM;
 use insertion::evaluation::objective::{Measure, Objectives};
 use insertion::evaluation::{RobustRange, SuccessRate, Window};
-use insertion::outcome::Outcome;
+use insertion::outcome::{Outcome, STOP_REMEDY};
 use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design};
 use insertion::surrogate::Estimate;
-use insertion::trial::STOP_CAUSE;
 use study::{Recorded, StudyConfig, StudyRecord};
 
 /// Returns the number of evaluations after which the search settled (stopped early), and the criterion, in words.
@@ -87,17 +86,9 @@ const REMEDIES: [&str; 5] = [
 /// Returns advice for a nominal start that ends with this outcome, as a sentence without a full stop.
 pub fn remedy(nominal: Outcome, robot_stopped: bool) -> &'static str {
     match robot_stopped {
-        true => {
-            "Lower the speed or the preload of the task's phases, or use a robot with higher limits"
-        }
+        true => STOP_REMEDY,
         false => REMEDIES[usize::from(nominal.failure().unwrap_or(0))],
     }
-}
-
-/// Returns the cause of a protective stop, to follow the outcome of its trial; empty without one.
-pub fn stop(robot_stopped: bool) -> String {
-    let cause = || format!(", since the robot stopped at {STOP_CAUSE}");
-    robot_stopped.then(cause).unwrap_or_default()
 }
 
 /// Returns the outcome beyond an end of a window, in words; `None` if the search ended without a failure.

@@ -5,6 +5,7 @@ use crate::answer::words::rounded;
 use contact::scene::{Geom, Pose};
 use contact::{ContactPoint, shapes};
 use input::units::MM;
+use insertion::outcome::stop_words;
 use insertion::trial::record::Frame;
 use serde_json::{Value, json};
 
@@ -45,8 +46,6 @@ pub(super) fn data(film: &Film) -> Value {
     let points = |of: &dyn Fn(&Frame) -> &[ContactPoint]| -> Vec<Vec<f64>> {
         frames.iter().map(|frame| of(frame).iter().flat_map(contact).collect()).collect()
     };
-    let stop = trial.robot_stop().map_or(String::new(), |stop| format!("; robot stop {stop}"));
-    let outcome = trial.outcome.to_string() + &stop;
     let phases = trial.phases.iter().map(|p| (&*p.name, rounded(p.time_s, 4)));
     let mut trajectories = json!({
         "plug": poses(&|frame| frame.poses.plug),
@@ -61,7 +60,7 @@ pub(super) fn data(film: &Film) -> Value {
     }
     json!({
         "label": film.label,
-        "outcome": outcome,
+        "outcome": trial.outcome.to_string() + stop_words(trial.robot_stopped),
         "kind": trial.outcome.word(),
         // Rounded like the times of the frames, so that it is not after the last one.
         "decided_s": rounded(recording.decided_s, 4),

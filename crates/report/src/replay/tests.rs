@@ -71,7 +71,7 @@ fn a_page_contains_its_films_and_loads_nothing() {
     assert_eq!(page.matches("\"label\":").count(), 2);
     assert_eq!(data(&page).map(|data| data.matches("\"label\":").count()), Some(2));
     assert!(
-        page.contains("failed: jammed (class 3); robot stop in the phase")
+        page.contains("failed: jammed (class 3), robot stop at a limit")
             && page.contains("default-src 'none'")
     );
     assert!(page.len() < 600_000, "{} bytes", page.len());

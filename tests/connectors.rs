@@ -387,7 +387,10 @@ fn a_plug_starts_above_a_deep_lead_in() {
     optimize(&["measure", "sheet", "--task", &task, "--finger", "10,0", "--out", &sheet])
         .succeeds();
     let inserted = format!("at least {:.1} mm below the socket's top", depth + 2.0);
-    assert!(folder.read("sheet.html").contains(&inserted), "{inserted}");
+    // The plug cannot slide on the face in the recess.
+    let plate = "a flat plate of the socket's material, ";
+    let page = folder.read("sheet.html");
+    assert!(page.contains(&inserted) && page.contains(plate), "{inserted}");
 }
 
 /// A key without a slot in the socket stops the plug after 2 mm.

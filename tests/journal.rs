@@ -78,6 +78,7 @@ fn evaluation() -> impl Strategy<Value = Evaluation> {
             window: Window { nominal, negative_steps, positive_steps, end_negative, end_positive },
             failure_counts,
             diverged,
+            robot_stops: trials % 2,
             trials,
             peak_force_n,
             slip_mm,

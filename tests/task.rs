@@ -191,6 +191,14 @@ fn a_wrong_unit_of_one_number_is_the_only_problem() {
         ),
         ("tilt_deg = 10.0", "tilt_deg = 0.17", "strategy.tilt_deg", "radians?", "9.7 degrees"),
         ("tilt_deg = 10.0", "tilt_deg = -0.17", "strategy.tilt_deg", "radians?", "-9.7 degrees"),
+        ("force_n = 5.0", "force_n = 500.0", "grip.force_n", "500 N is more", "grams-force"),
+        (
+            "speed_mm_per_s = 20.0",
+            "speed_mm_per_s = 3000.0",
+            "\"touch\" speed_mm_per_s",
+            "3000 mm/s is more than the plausible 2000 mm/s",
+            "between 0.2 and 2000 mm/s",
+        ),
         ("tilt_deg = 4.0", "tilt_deg = 0.05", "success.tilt_deg", "0.05 degrees", "2.9 degrees"),
     ] {
         let found = only_problem(from, to);

@@ -43,7 +43,7 @@ class Measurements:
     """
 
     @checked
-    def __init__(self, file: StrPath = "measurements.csv", *, tasks: Iterable[StrPath] = ()) -> None:
+    def __init__(self, file: StrPath = "bench.csv", *, tasks: Iterable[StrPath] = ()) -> None:
         """Refers to a file; ``tasks`` are files of your own tasks that are not named in its comment lines."""
         self.file: str = os.fspath(file)
         self._tasks: list[StrPath] = [os.fspath(task) for task in tasks]

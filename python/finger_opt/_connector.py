@@ -30,6 +30,7 @@ class Nominal(Result):
 
     outcome: Outcome
     failure: int | None
+    robot_stopped: bool
     depth_mm: float
     tilt_deg: float
     peak_force_n: float

@@ -59,6 +59,8 @@ class Window(Result):
     simulated_s: float
     #: Position of each end in the grid step beyond it, 0 to 1; if the nominal start fails, its margin, -1 to 0.
     end_shares: tuple[float, float]
+    #: Number of trials that a protective stop of the robot ended.
+    robot_stops: int = 0
     #: Shift of the taught start, mm, if the start was taught.
     taught_start_mm: float | None = None
     success_rate: float | None = None

@@ -77,6 +77,8 @@ class Trial(Subject):
     outcome: Outcome
     #: Failure class, 1 to 4; ``None`` if it did not fail.
     failure: int | None = None
+    #: Whether a protective stop of the robot ended the trial.
+    robot_stopped: bool
     depth_mm: float
     tilt_deg: float
     peak_force_n: float

@@ -14,7 +14,7 @@ use crate::setup::words::{parse_at_least_0, parse_number};
 use calibration::identify::log::of_samples;
 use input::units::MM;
 use insertion::evaluation::grid_mm;
-use insertion::outcome::Outcome;
+use insertion::outcome::{Outcome, stop_words};
 use insertion::trial::{Grasp, Sample, Trial, picture};
 use report::answer::lines;
 use report::answer::words::number;
@@ -195,9 +195,10 @@ fn whole<S: Serializer>(trial: &Trial, serializer: S) -> Result<S::Ok, S::Error>
 
 fn text(trial: &Trial) -> String {
     let text = format!(
-        "outcome       {}\ndepth         {}\ntilt          {}\npeak force    {}\n\
+        "outcome       {}{}\ndepth         {}\ntilt          {}\npeak force    {}\n\
          slip          {}\n",
         trial.outcome,
+        stop_words(trial.robot_stopped),
         number(trial.depth_mm, 2, "mm"),
         number(trial.tilt_deg, 2, "deg"),
         number(trial.peak_force_n, 1, "N"),

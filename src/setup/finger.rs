@@ -3,17 +3,21 @@
 use super::Setup;
 use crate::failure::Failure;
 use crate::layout;
+use connector::check::{Problem, wrong_units};
 use input::shown;
 use input::units::{MM, N_PER_MM};
+use input::wrong_unit;
 use insertion::evaluation::cell::Priors;
 use insertion::evaluation::evaluator::{Evaluator, Scenario};
 use insertion::finger::model::{CentreSource, FingerModelKind, RCC_KEY};
 use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design};
 use insertion::surrogate::Prediction;
+use insertion::task::Task;
 use parameters::numbers;
 use report::answer::lines;
 use serde::{Serialize, Serializer};
 use serde_json::json;
+use std::f64::consts::FRAC_PI_2;
 
 /// Parses a stiffness, N/mm.
 fn stiffness(text: &str) -> Result<f64, String> {
@@ -151,6 +155,9 @@ impl FingerRequest {
             }
         };
         let scenario = evaluator.scenario(template, &design, stiffness).map_err(Failure::input)?;
+        if !set.0.is_empty() {
+            check_units(&template.task, &scenario.task)?;
+        }
         Ok(ChosenFinger {
             scenario,
             cell: evaluator.cell.clone(),
@@ -181,12 +188,26 @@ impl FingerRequest {
     }
 }
 
-/// Checks that a value lies within the bounds of its key in the space.
+/// Checks that no setting has changed a number of a task to one that is probably in a wrong unit.
+fn check_units(file: &Task, set: &Task) -> Result<(), Failure> {
+    let known = wrong_units(file);
+    let found = wrong_units(set).into_iter().find(|problem| !known.contains(problem));
+    found.map_or(Ok(()), |Problem { key, problem, remedy }| {
+        Err(Failure::usage(format!("--set: task.{key}: {problem}; {remedy}")))
+    })
+}
+
+/// Checks that a value lies within the bounds of its key in the space, and that a direction is not in radians.
 fn check(setup: &Setup, flag: &str, key: &str, value: f64) -> Result<(), Failure> {
     let parameters = &setup.space.parameters;
     match parameters.iter().find(|parameter| parameter.key == key) {
         // NaN is outside.
-        Some(parameter) if (parameter.low..=parameter.high).contains(&value) => Ok(()),
+        Some(parameter) if (parameter.low..=parameter.high).contains(&value) => {
+            let radians = wrong_unit::angle(value, FRAC_PI_2, parameter.step);
+            radians.filter(|_| key == DIRECTION_KEY).map_or(Ok(()), |radians| {
+                Err(Failure::usage(format!("{flag}: {}", radians.join(" "))))
+            })
+        }
         Some(parameter) => Err(Failure::usage(format!(
             "{flag} {}: {key} must lie between {} and {} in the space `{}`",
             shown(value),

@@ -14,6 +14,9 @@ use insertion::space::Space;
 use std::path::{Path, PathBuf};
 use study::{BENCH_ROLES, StudyRecord};
 
+/// Measurement file that `measure add` writes and `measure check` reads by default.
+pub const BENCH_FILE: &str = "bench.csv";
+
 /// Bench measurements, and priors of the parameters that were not measured.
 pub struct Measured {
     /// Name of the measurement file.

@@ -128,6 +128,7 @@ pub(crate) fn outcome_json(trial: &Trial) -> Value {
     json!({
         "outcome": trial.outcome.word(),
         "failure": trial.outcome.failure(),
+        "robot_stopped": trial.robot_stopped,
         "depth_mm": trial.depth_mm,
         "tilt_deg": trial.tilt_deg,
         "peak_force_n": trial.peak_force_n,

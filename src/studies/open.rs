@@ -16,7 +16,7 @@ use insertion::evaluation::evaluator::Evaluator;
 use insertion::evaluation::robustness::Plan;
 use insertion::evaluation::template::Template;
 use insertion::evaluation::tolerance::Search;
-use insertion::outcome::Outcome;
+use insertion::outcome::{Outcome, stop_words};
 use insertion::task::StartRule;
 use insertion::trial::NEVER;
 use parameters::label;
@@ -90,7 +90,8 @@ impl OpenStudy {
                 && let (_, trial) = nominal_start(task, robot, *engine, &NEVER)?
                 && trial.outcome != Outcome::Inserted
             {
-                let (name, ends) = (&task.name, outcome(trial.outcome));
+                let ends = outcome(trial.outcome) + stop_words(trial.robot_stopped);
+                let name = &task.name;
                 let (command, why) = repair(&record, self.study.dir(), place);
                 warn(&format!(
                     "{name}: with the medium finger the nominal start ends with {ends}; {command} {why}"

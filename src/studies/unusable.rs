@@ -3,6 +3,7 @@
 use crate::context::not_stopped;
 use crate::failure::Failure;
 use crate::setup::Setup;
+use insertion::outcome::stop_words;
 use insertion::task::StartRule;
 use insertion::trial::{Grasp, picture};
 use report::answer::words::{outcome, remedy};
@@ -31,7 +32,7 @@ pub(crate) fn check(
     let rig = evaluator.rig(&scenario, taught, 1.0).map_err(Failure::input)?;
     let trial = rig.grasp(Grasp { stop, ..Grasp::of(&scenario.finger) }).trial(0.0);
     not_stopped(stop)?;
-    let class = outcome(trial.outcome);
+    let class = outcome(trial.outcome) + stop_words(trial.robot_stopped);
     let phase =
         trial.phases.last().map_or(String::new(), |phase| format!(" in phase {}", phase.name));
     let label = format!("evaluation {} at the nominal start: {class}{phase}", nearest.index);
@@ -49,6 +50,6 @@ pub(crate) fn check(
         trial.depth_mm,
         trial.tilt_deg,
         file.display(),
-        remedy(trial.outcome)
+        remedy(trial.outcome, trial.robot_stopped)
     )))
 }

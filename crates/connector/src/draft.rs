@@ -368,6 +368,7 @@ impl Hole {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use input::units::DEG;
 
     #[test]
     fn a_clearance_is_less_than_the_plug_is_thick_and_sizes_are_within_bounds() {
@@ -378,7 +379,8 @@ mod tests {
                 Dimensions { plug, pins: None, round: false, clearance, key, chamfer, body: None };
             draft("mine", &size, None)
         };
-        assert!(draft(2.3 * MM).is_ok());
+        let [tight, wide] = [0.1, 2.3].map(|mm| draft(mm * MM).unwrap().success.tilt / DEG);
+        assert!((tight - 3.0).abs() < 1e-9 && (wide - 8.0).abs() < 1e-9, "{tight} {wide}");
         for clearance in [2.4 * MM, 10.0 * MM, f64::INFINITY] {
             let error = draft(clearance).unwrap_err();
             assert!(error.contains("less than the smallest side of the plug, 2.4 mm"), "{error}");

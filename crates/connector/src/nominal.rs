@@ -3,7 +3,7 @@
 use super::body::ConvexBody;
 use super::seat;
 use input::units::{DEG, MM};
-use insertion::outcome::{FailureClass, Outcome};
+use insertion::outcome::{FailureClass, Outcome, STOP_REMEDY};
 use insertion::task::{Stage, Task};
 use insertion::trial::{PhaseEnd, Trial};
 
@@ -11,6 +11,7 @@ use insertion::trial::{PhaseEnd, Trial};
 pub fn explain(task: &Task, trial: &Trial) -> String {
     let slip = format!("slip {:.1} mm, allowed {:.1}", trial.slip_mm, task.grip.slip_limit / MM);
     match trial.outcome {
+        Outcome::Failed(_) if trial.robot_stopped => format!("the robot stopped: {STOP_REMEDY}"),
         Outcome::Inserted => format!(
             "inserted {:.1} mm deep, {:.1} degrees off; required: {:.1} mm and {:.1} degrees",
             trial.depth_mm,

@@ -42,8 +42,8 @@ const SWEPT_PRELOAD: f64 = 0.15 * MM;
 const PUSH: [f64; 2] = [4.0 * MM, 100.0 * MM];
 /// Tilt that counts as upright beyond that which the play allows, degrees.
 const UPRIGHT_DEG: f64 = 2.0;
-/// Smallest limit of the tilt of an upright plug, degrees.
-const LEAST_UPRIGHT_DEG: f64 = 3.0;
+/// Smallest and largest limit of the tilt of an upright plug, degrees; the largest is that of the shipped tasks.
+const TILT_LIMIT_DEG: [f64; 2] = [3.0, 8.0];
 /// Distance of the success depth above the seat, besides that for a tilt: m, and a share of the full depth.
 const MISSING: (f64, f64) = (0.2 * MM, 0.02);
 /// Share of the full depth at which the play is measured.
@@ -313,7 +313,8 @@ impl Moves {
 /// Sets depth and tilt of success from the play in y, m.
 fn success(task: &mut Task, plug: &ConvexBody, seat: &Seat, play: f64) {
     let upright = libm::atan(play / seat.depth) / DEG + UPRIGHT_DEG;
-    let tilt = upright.ceil().max(LEAST_UPRIGHT_DEG) * DEG;
+    let [least, most] = TILT_LIMIT_DEG;
+    let tilt = upright.ceil().clamp(least, most) * DEG;
     // Of a tilted plug, the outer end of the stopping part comes down first.
     let wide = |[part, _]: [usize; 2]| width(extent(plug.parts[part].solid.corners(), 1));
     let half = seat.stopped_by.map_or(0.0, wide) / 2.0;

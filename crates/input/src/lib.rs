@@ -6,12 +6,14 @@ pub mod numbers;
 mod place;
 pub mod shipped;
 pub mod units;
+pub mod wrong_unit;
 
 pub use place::{InputError, Place, Placed, RequestError};
 use serde::de::DeserializeOwned;
 use std::sync::atomic::{AtomicU64, Ordering};
 use toml::Spanned;
 use toml::de::DeTable;
+use wrong_unit::WrongUnit;
 
 /// Largest magnitude of a number in a file. A larger one is probably in a wrong unit, and could overflow in sums and
 /// products.
@@ -22,6 +24,11 @@ const LONGEST_MM: f64 = 1000.0;
 /// Returns the error of a file with invalid TOML or an unexpected structure; `text` is that of the file, empty for a
 /// table without a text.
 pub fn syntax(file: &str, text: &str, error: &toml::de::Error) -> InputError {
+    let near = nearest_key(error.message(), &[]);
+    fault(file, text, error, near)
+}
+
+fn fault(file: &str, text: &str, error: &toml::de::Error, near: Option<&str>) -> InputError {
     let before = error.span().and_then(|span| text.get(..span.start));
     let line = before.map(|before| 1 + before.matches('\n').count());
     let shown = error.to_string();
@@ -31,18 +38,15 @@ pub fn syntax(file: &str, text: &str, error: &toml::de::Error) -> InputError {
         None => (shown.trim_end(), ""),
     };
     let place = Place { line, ..Place::file(file) }.key(key);
-    place.fault(problem.to_owned() + &suggestion(error.message()))
+    let hint = near.map_or(String::new(), |near| format!("; did you mean `{near}`?"));
+    place.fault(problem.to_owned() + &hint)
 }
 
-/// Returns a question that suggests the accepted word nearest to the unknown word of a parser's message; empty if none
-/// is near.
-fn suggestion(message: &str) -> String {
-    let mut words = message.split('`').skip(1).step_by(2);
-    let (Some(given), accepted) = (words.next(), words.collect::<Vec<_>>()) else {
-        return String::new();
-    };
-    let near = shipped::nearest(given, &accepted).filter(|_| message.starts_with("unknown "));
-    near.map(|near| format!("; did you mean `{near}`?")).unwrap_or_default()
+/// Returns the word nearest to the unknown word of a parser's message, of the accepted words and `more` words.
+fn nearest_key<'a>(message: &'a str, more: &[&'a str]) -> Option<&'a str> {
+    let mut words = message.strip_prefix("unknown ")?.split('`').skip(1).step_by(2);
+    let (given, accepted) = (words.next()?, words.chain(more.iter().copied()));
+    shipped::nearest(given, &accepted.collect::<Vec<_>>())
 }
 
 /// Parsed TOML text from which typed values are read.
@@ -51,7 +55,12 @@ pub struct Document<'a> {
     text: &'a str,
     file: &'a str,
     tree: Spanned<DeTable<'a>>,
+    /// Keys of the file that were taken out of the tree.
+    taken: &'a [&'a str],
 }
+
+/// Largest number of unknown keys that are reported at once.
+const MAX_UNKNOWN: usize = 10;
 
 /// Number of parsed texts.
 static PARSED: AtomicU64 = AtomicU64::new(0);
@@ -69,7 +78,7 @@ impl<'a> Document<'a> {
     pub fn parse(text: &'a str, file: &'a str) -> Result<Self, InputError> {
         PARSED.fetch_add(1, Ordering::Relaxed);
         let tree = DeTable::parse(text).map_err(|error| syntax(file, text, &error))?;
-        Ok(Document { text, file, tree })
+        Ok(Document { text, file, tree, taken: &[] })
     }
 
     /// Returns the file name, as passed to [`Document::parse`].
@@ -78,11 +87,11 @@ impl<'a> Document<'a> {
     }
 
     /// Returns the document without these top-level keys.
-    pub fn without(mut self, keys: &[&str]) -> Self {
+    pub fn without(mut self, keys: &'a [&'a str]) -> Self {
         for key in keys {
             self.tree.get_mut().remove(*key);
         }
-        self
+        Document { taken: keys, ..self }
     }
 
     /// Deserializes the whole document.
@@ -91,7 +100,7 @@ impl<'a> Document<'a> {
     /// If the document does not have the structure of `T`, has a control character, or has a `name` that is empty or
     /// has several lines.
     pub fn read<T: DeserializeOwned>(&self) -> Result<T, InputError> {
-        let (value, table) = (self.deserialize()?, self.deserialize()?);
+        let (value, table) = (self.deserialize(MAX_UNKNOWN)?, self.deserialize(0)?);
         if let Some((key, problem)) = bad_text(&table) {
             return Check { file: self.file }.fail(&key, problem);
         }
@@ -101,10 +110,26 @@ impl<'a> Document<'a> {
         Ok(value)
     }
 
-    fn deserialize<T: DeserializeOwned>(&self) -> Result<T, InputError> {
-        T::deserialize(toml::de::Deserializer::from(self.tree.clone())).map_err(|mut error| {
+    /// Deserializes the tree; the error lists up to `most` unknown keys, then the first other fault.
+    fn deserialize<T: DeserializeOwned>(&self, most: usize) -> Result<T, InputError> {
+        let read = T::deserialize(toml::de::Deserializer::from(self.tree.clone()));
+        read.map_err(|mut error| {
             error.set_input(Some(self.text));
-            syntax(self.file, self.text, &error)
+            let near = nearest_key(error.message(), self.taken);
+            let mut found = fault(self.file, self.text, &error, near);
+            let rest = || {
+                let (at, mut text) = (error.span()?, self.text.to_owned());
+                let name = error.message().strip_prefix("unknown field `")?;
+                name.strip_prefix(text.get(at.clone())?)?;
+                // Reads on as if the key were the nearest one or, without one, its line a comment.
+                text.replace_range(at, near.unwrap_or("#"));
+                let document = Document::parse(&text, self.file).ok()?.without(self.taken);
+                document.deserialize::<T>(most.checked_sub(1)?).err()
+            };
+            if let Some(rest) = rest() {
+                found.problem += &format!("\n{}", rest.problem);
+            }
+            found
         })
     }
 }
@@ -224,6 +249,14 @@ impl Check<'_> {
         Ok(values)
     }
 
+    /// Checks that a value is in the unit of its key.
+    ///
+    /// # Errors
+    /// If it is `found` to be in another.
+    pub fn unit(&self, key: &str, found: Option<WrongUnit>) -> Result<(), InputError> {
+        found.map_or(Ok(()), |found| self.fail(key, found.join("; ")))
+    }
+
     /// Checks that a value lies in -1e9 .. 1e9.
     ///
     /// # Errors
@@ -288,6 +321,33 @@ mod tests {
         assert!(text.ends_with("expected `plug_socket`; did you mean `plug_socket`?"), "{text}");
         let error = read::<Friction>("other = 0.3", "task.toml").unwrap_err().to_string();
         assert!(!error.contains("mean"), "{error}");
+    }
+
+    #[test]
+    fn all_unknown_keys_and_a_missing_one_are_reported_at_once() {
+        #[derive(Debug, serde::Deserialize)]
+        #[serde(deny_unknown_fields)]
+        #[expect(dead_code, reason = "only the names are read")]
+        struct Pair {
+            name: String,
+            friction: Vec<Friction>,
+            mass_g: f64,
+        }
+        let text =
+            "nam = \"a\"\nother = 1\n[[friction]]\nplug_socket = 1\n[[friction]]\nplug_sockt = 1";
+        let error = read::<Pair>(text, "task.toml").unwrap_err();
+        assert_eq!(error.place().line, Some(6));
+        let text = error.to_string();
+        let found: Vec<_> = text.lines().filter(|line| line.contains('`')).collect();
+        let expected = ["`plug_sockt`", "`nam`", "`other`", "`mass_g`"];
+        let begin = |(line, key): (&&str, &str)| {
+            line.split(" field ").nth(1).is_some_and(|of| of.starts_with(key))
+        };
+        assert!(found.len() == 4 && found.iter().zip(expected).all(begin), "{text}");
+        assert!(text.contains("line 1,") && text.contains("did you mean `name`?"), "{text}");
+        let document = Document::parse("kind = 1\nknd = 2\nplug_socket = 1", "t.toml").unwrap();
+        let error = document.without(&["kind"]).read::<Friction>().unwrap_err().to_string();
+        assert!(error.ends_with("did you mean `kind`?"), "{error}");
     }
 
     #[test]

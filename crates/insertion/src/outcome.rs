@@ -47,6 +47,15 @@ impl FailureClass {
     }
 }
 
+/// Returns the words for a protective stop of the robot, to follow the outcome of the trial; empty without one.
+pub fn stop_words(robot_stopped: bool) -> &'static str {
+    if robot_stopped { ", robot stop at a limit of force or joint torque" } else { "" }
+}
+
+/// Advice on a protective stop of the robot, without a full stop.
+pub const STOP_REMEDY: &str =
+    "Lower the speed or the preload of the task's phases, or use a robot with higher limits";
+
 impl From<FailureClass> for u8 {
     fn from(class: FailureClass) -> u8 {
         class.number()

@@ -2,7 +2,7 @@
 
 use crate::arm::{Arm, ArmError, RawArm, ReducedArm};
 use input::units::read::n_per_mm;
-use input::{Check, Document, InputError};
+use input::{Check, Document, InputError, wrong_unit};
 use nalgebra::Vector3;
 use parameters::numbers;
 use serde::Deserialize;
@@ -72,14 +72,19 @@ impl Robot {
     /// If the text is not a robot file, or a value is out of range.
     pub fn parse(text: &str, file: &str) -> Result<Self, InputError> {
         let document = Document::parse(text, file)?;
-        let Header { kind, name, description, stop_force } = document.read()?;
+        let OfKind { kind } = document.read()?;
         numbers::check_file("robot", &document.read()?, file)?;
-        let own = document.without(&HEADER);
+        // Read before the header, one of whose keys may be misspelt.
+        let (own, check) = (document.clone().without(&HEADER), Check { file });
         let drive = match kind {
             Kind::Rigid => own.read().map(|Rigid {}| Drive::Ideal)?,
             Kind::Servo => Drive::Servo(own.read()?),
-            Kind::Arm => Drive::Arm(Box::new(own.read::<RawArm>()?.arm(Check { file })?)),
+            Kind::Arm => Drive::Arm(Box::new(own.read::<RawArm>()?.arm(check)?)),
         };
+        let Header { name, description, stop_force } = document.read()?;
+        if let Drive::Servo(Servo { mass, .. }) = drive {
+            check.unit("mass_kg", wrong_unit::number("mass_kg", mass, MASS_KG))?;
+        }
         Ok(Robot { name, description, drive, stop_force })
     }
 
@@ -107,6 +112,9 @@ impl Robot {
         Ok(MountedRobot { flange, stop_force: self.stop_force })
     }
 }
+
+/// Range of the effective mass of wrist and gripper at the TCP, kg.
+const MASS_KG: [f64; 2] = [0.05, 100.0];
 
 /// Settling time of a servo, in time constants.
 const SETTLING_TIME_CONSTANTS: f64 = 5.0;
@@ -144,18 +152,23 @@ enum Kind {
     Arm,
 }
 
-/// Keys common to all robot files; the kind determines the others. Not a tagged enum, whose errors have no line
-/// number.
+/// Kind of a robot file, which determines its keys beside those of [`Header`]. Not a tagged enum, whose errors have no
+/// line number.
+#[derive(Deserialize)]
+struct OfKind {
+    kind: Kind,
+}
+
+/// Keys common to all robot files beside [`OfKind`].
 #[derive(Deserialize)]
 struct Header {
-    kind: Kind,
     name: String,
     description: String,
     #[serde(rename = "stop_force_n")]
     stop_force: f64,
 }
 
-/// Keys of [`Header`].
+/// Keys of [`OfKind`] and [`Header`].
 const HEADER: [&str; 4] = ["kind", "name", "description", "stop_force_n"];
 
 /// Keys of a rigid robot beside those of [`Header`].
@@ -190,6 +203,27 @@ mod tests {
             assert!(error.starts_with(&format!("r.toml: {key}: ")), "{error}");
             assert!(error.contains(problem), "{key} = {value}: {error}");
         }
+        let misspelt =
+            servo.text.replace("stop_force_n", "stop_forc_n").replace("mass_kg", "mas_kg");
+        let both =
+            ["line 10", "did you mean `mass_kg`?", "line 13", "did you mean `stop_force_n`?"];
+        refused(Robot::parse(&misspelt, "r.toml"), &both);
+        let heavy = servo.text.replace(line("mass_kg"), "mass_kg = 900");
+        refused(
+            Robot::parse(&heavy, "r.toml"),
+            &["mass_kg: 900 kg is more", "between 0.05 and 100 kg"],
+        );
+        let arm = robot_file("ur5e");
+        let short = arm.text.replace(".0, ", "e-3, ").replace(".0]", "e-3]");
+        refused(Robot::parse(&short, "r.toml"), &["joint: all offset_mm together: 1."]);
+        let home = arm.text.replace("home_deg = [270.0, -90.0,", "home_deg = [1.57, -90.0,");
+        Robot::parse(&home, "r.toml").unwrap();
+        let home = arm.text.lines().map(|line| match line.starts_with("home_deg") {
+            true => "home_deg = [4.7, -1.6, -1.6, 4.7, 1.6, 0]",
+            false => line,
+        });
+        let home = home.collect::<Vec<_>>().join("\n");
+        refused(Robot::parse(&home, "r.toml"), &["home_deg: 4.7 degrees is less", "269.3 degrees"]);
         let heavy = robot_file("ur5e").text.replace("link_mass_kg = 3.7", "link_mass_kg = 3700");
         let problem = "joint \"shoulder pan\" link_mass_kg: is 3700";
         refused(Robot::parse(&heavy, "r.toml"), &[problem]);

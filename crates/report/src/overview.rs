@@ -11,7 +11,7 @@ use crate::answer::words::{design, evaluated, on, outcome, remedy};
 use crate::answer::{Answer, Verdict, command, expectation, lines};
 use finray::export::sheet;
 use insertion::evaluation::{Evaluation, grid_mm};
-use insertion::outcome::{FailureClass, Outcome};
+use insertion::outcome::{FailureClass, Outcome, stop_words};
 use maud::{Markup, PreEscaped, html};
 use study::Recorded;
 
@@ -76,13 +76,13 @@ fn drawing_and_files(answer: &Answer, files: &PageFiles) -> Option<Markup> {
 }
 
 /// Returns the outcome of the design that is nearest to inserting, advice, and a drawing of its nominal start.
-fn nominal(nearest: &Recorded, fails: Option<Outcome>, files: &PageFiles) -> Markup {
+fn nominal(nearest: &Recorded, fails: Option<&Evaluation>, files: &PageFiles) -> Markup {
     html! {
         div.whole {
             @if let Some(fails) = fails {
                 p {
                     "Nearest to inserting: " (evaluated(nearest)) ". \
-                    Its nominal start ends with " b { (outcome(fails)) } ". " (remedy(fails)) "."
+                    Its nominal start ends with " b { (outcome(fails.window.nominal)) } (stop_words(fails.nominal_stop())) ". " (remedy(fails.window.nominal, fails.nominal_stop())) "."
                 }
             }
             @if let Some(svg) = &files.nominal {

@@ -56,7 +56,7 @@ fn instructions(task: &Task, pictures: &[Picture]) -> Markup {
             "tilted by " (format!("{:.1}", task.strategy.tilt / DEG)) "°. Near there, teach a start from which the plug "
             "inserts three times out of three: this is 0. Shifts are along y, in which the jaws close; + is away from "
             "the wall that the search moves to. Keep grasp, speeds, plug and socket the same for all fingers." }
-        (probe())
+        (probe(task, top))
         h2 { "Which starts, in which order" }
         ol {
             li { "From 0 in steps of 0.5 mm to -, until two neighbouring starts fail; then the same to +." }
@@ -72,12 +72,18 @@ fn instructions(task: &Task, pictures: &[Picture]) -> Markup {
     }
 }
 
-/// Returns the instructions for the friction probe: the plug is pressed on a flat face and slides along it.
-fn probe() -> Markup {
+/// Returns the instructions for the friction probe: the plug is pressed on a flat face and slides along it. In a recess
+/// of this depth, mm, it cannot: a plate with room for plug and stroke replaces the socket.
+fn probe(task: &Task, recess_mm: f64) -> Markup {
     let [stroke, speed] = [PROBE_STROKE, PROBE_SPEED].map(|length| length / MM);
+    let long_mm = (stroke + (task.opening[1][1] - task.opening[1][0]) / MM).ceil();
+    let face = match recess_mm > 0.0 {
+        true => &format!("a flat plate of the socket's material, {long_mm} mm long or more in y"),
+        false => "the flat face beside the opening",
+    };
     html! {
         h2 { "First the probe, once with each finger" }
-        p { "Hold the plug upright over the flat face beside the opening. Start a log of time, force, pose and commanded "
+        p { "Hold the plug upright over " (face) ". Start a log of time, force, pose and commanded "
             "pose, 125 Hz or more, while the plug is in the air. Press it against the face with " (PROBE_FORCE) " N and slide "
             "it " (stroke) " mm along y, back and forth, " (PROBE_SLIDES / 2) " times, at " (speed) " mm/s. Stop if it catches. "
             "Lift it off, then end the log. Log each insertion, too: every log is a line of runs.csv (log, "

@@ -3,6 +3,7 @@
 use crate::command::{self, Output};
 use crate::context::Context;
 use crate::failure::Failure;
+use crate::setup::measured::BENCH_FILE;
 use crate::setup::task::{TaskFile, read_task};
 use crate::terminal::say;
 use calibration::experiments::{
@@ -25,7 +26,7 @@ use std::path::Path;
 )]
 pub struct Request {
     /// The file
-    #[arg(value_name = "FILE", default_value = "measurements.csv")]
+    #[arg(value_name = "FILE", default_value = BENCH_FILE)]
     pub file: String,
     /// Task: ket8, ket12, rj45, usb, rj45_latch, usb_a, or the path of a task file
     #[arg(long, value_name = "NAME")]

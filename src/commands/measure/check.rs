@@ -3,7 +3,7 @@
 use crate::command::{self, Output};
 use crate::context::Context;
 use crate::failure::Failure;
-use crate::setup::measured;
+use crate::setup::measured::{self, BENCH_FILE};
 use crate::setup::task::read_task;
 use calibration::experiments::Experiment;
 use serde_json::{Value, json};
@@ -13,7 +13,7 @@ use serde_json::{Value, json};
 #[command(display_order = 2, after_help = "Example: optimize measure check bench.csv")]
 pub struct Request {
     /// The file, or `published` for the shipped one
-    #[arg(value_name = "FILE")]
+    #[arg(value_name = "FILE", default_value = BENCH_FILE)]
     pub file: String,
     /// File of your own task that is not named in a comment line; may be given several times
     #[arg(long, value_name = "FILE.toml")]

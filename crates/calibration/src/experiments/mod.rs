@@ -1,4 +1,4 @@
-//! Parsing and checks of bench measurements: `measurements.csv` (`docs/guide/measuring.md`).
+//! Parsing and checks of bench measurements: `bench.csv` (`docs/guide/measuring.md`).
 //!
 //! A line needs the task, the design and at least one measurement; other columns may be left out. Further design
 //! parameters are further columns, named as in a space file.

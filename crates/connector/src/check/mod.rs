@@ -48,6 +48,11 @@ impl From<&InputError> for Problem {
     }
 }
 
+/// Returns the numbers of a task that are probably in a wrong unit.
+pub fn wrong_units(task: &Task) -> Vec<Problem> {
+    units::problems(&TaskBodies::new(task))
+}
+
 /// Returns the faults of a task, causes before consequences.
 pub fn problems(task: &Task) -> Vec<Problem> {
     let reached;

@@ -1,18 +1,15 @@
-//! Checks of the units of a task file: lengths in mm, angles in degrees.
+//! Checks of the units of a task file: lengths in mm, angles in degrees, forces in N.
 
 use super::{Problem, TaskBodies, part_key, widest_key};
 use crate::body::{longest_side, width};
 use crate::seat::section;
 use input::units::{DEG, MM, mm};
+use input::wrong_unit::{self, WrongUnit, remedy};
 use insertion::task::Ending;
 use nalgebra::Vector3;
 
 /// Range of widths between the jaws, mm: that of grippers in assembly cells, with a margin.
 pub const FACES_MM: [f64; 2] = [1.0, 100.0];
-
-/// Units mistaken for millimetres, in mm.
-const UNITS: [(&str, f64); 4] =
-    [("metres", 1000.0), ("inches", 25.4), ("micrometres", 0.001), ("centimetres", 10.0)];
 
 /// Smallest plausible widths of a plug as shares of its opening: in both directions, and in one. Shipped tasks have at
 /// least 0.6, a flat pin in a round hole 0.1.
@@ -21,6 +18,9 @@ const LEAST_SHARE: [f64; 2] = [1.0 / 8.0, 1.0 / 20.0];
 const MOST_SHARE: f64 = 8.0;
 /// Smallest plausible tilt except 0, degrees. Smaller numbers are angles up to 15 degrees, in radians.
 const LEAST_TILT_DEG: f64 = 0.27;
+/// Grip force, and its plausible range, N.
+const FORCE: &str = "grip.force_n";
+const FORCE_N: [f64; 2] = [0.01, 200.0];
 
 /// Checks lengths and angles for a wrong unit.
 pub(super) fn problems(case: &TaskBodies) -> Vec<Problem> {
@@ -52,7 +52,7 @@ pub(super) fn problems(case: &TaskBodies) -> Vec<Problem> {
         };
         let by = Vector3::from(phase.displacement).norm();
         found.extend(of_phase("move_mm", by, [0.05, 200.0]));
-        found.extend(of_phase("speed_mm_per_s", phase.speed, [0.5, 2000.0]));
+        found.extend(of_phase("speed_mm_per_s", phase.speed, [0.2, 2000.0]));
         found.extend(match phase.ending {
             Ending::Tolerance(value) => of_phase("tolerance_mm", value, [0.005, 10.0]),
             Ending::Touch { preload, .. } => of_phase("preload_mm", preload, [0.01, 10.0]),
@@ -60,48 +60,26 @@ pub(super) fn problems(case: &TaskBodies) -> Vec<Problem> {
         });
     }
     // `task tune` varies a tilt in steps of 0.1 degrees.
-    let tenths = task.strategy.tilt / DEG * 10.0;
-    let radians = (tenths - tenths.round()).abs() > 1e-6;
-    found.extend(angle("strategy.tilt_deg", task.strategy.tilt).filter(|_| radians));
-    found.extend(angle("success.tilt_deg", task.success.tilt));
+    for (key, tilt, step) in [
+        ("strategy.tilt_deg", task.strategy.tilt, 0.1),
+        ("success.tilt_deg", task.success.tilt, LEAST_TILT_DEG),
+    ] {
+        found.extend(problem(key, wrong_unit::angle(tilt / DEG, LEAST_TILT_DEG, step)));
+    }
+    found.extend(problem(FORCE, wrong_unit::number(FORCE, grip.force, FORCE_N)));
     if found.is_empty() {
         found.extend(other_unit(case));
     }
     found
 }
 
-/// Checks that a length, m, lies in its range, mm.
-pub(super) fn length(key: &str, value: f64, [low, high]: [f64; 2]) -> Option<Problem> {
-    let value_mm = value / MM;
-    if (low..=high).contains(&value_mm) {
-        return None;
-    }
-    let (size, limit) = if value_mm < low { ("less", low) } else { ("more", high) };
-    let problem = format!("{value_mm:.4} mm is {size} than the plausible {limit} mm");
-    Some(Problem::new(key, problem, remedy(value_mm, [low, high])))
+/// Checks that a length, m, or a speed, m/s, lies in its range, mm or mm/s.
+pub(super) fn length(key: &str, value: f64, range_mm: [f64; 2]) -> Option<Problem> {
+    problem(key, wrong_unit::number(key, value / MM, range_mm))
 }
 
-/// Returns advice on a length outside its range, mm: the unit in which it is inside, or the range.
-fn remedy(value_mm: f64, [low, high]: [f64; 2]) -> String {
-    let within = |(_, factor): &&(&str, f64)| (low..=high).contains(&(value_mm * factor));
-    match UNITS.iter().find(within) {
-        Some((unit, factor)) => format!(
-            "lengths are in mm; if these were {unit}, multiply by {factor}: {:.2} mm",
-            value_mm * factor
-        ),
-        None => format!("between {low} and {high} mm"),
-    }
-}
-
-/// Checks that an angle, rad, is 0 or large enough to be in degrees.
-fn angle(key: &str, angle: f64) -> Option<Problem> {
-    let degrees = (angle / DEG * 1e4).round() / 1e4;
-    if angle == 0.0 || degrees.abs() >= LEAST_TILT_DEG {
-        return None;
-    }
-    let problem = format!("{degrees} degrees is less than {LEAST_TILT_DEG}: are these radians?");
-    let remedy = format!("angles are in degrees: {degrees} rad is {:.1} degrees", degrees / DEG);
-    Some(Problem::new(key, problem, remedy))
+fn problem(key: &str, found: Option<WrongUnit>) -> Option<Problem> {
+    found.map(|[problem, remedy]| Problem::new(key, problem, remedy))
 }
 
 /// Checks that neither the plug nor the opening is so narrow that it must be in another unit.
@@ -115,13 +93,13 @@ fn other_unit(case: &TaskBodies) -> Option<Problem> {
         let [plug, opening] = [plug[axis], opening[axis]].map(|width| width / MM);
         let (key, wide) = (format!("socket.opening_{}_mm", ["x", "y"][axis]), mm(plug * MM));
         let problem = format!("is {} mm wide, but the plug is {wide} mm wide", mm(opening * MM));
-        return Some(Problem::new(key, problem, remedy(opening, [plug, plug / both])));
+        return Some(Problem::new(key, problem, remedy(" mm", opening, [plug, plug / both])));
     }
     if share(axis) >= one && share(1 - axis) >= both {
         return None;
     }
     let [plug, opening] = [plug[axis], opening[axis]];
-    let remedy = remedy(plug / MM, [both, 1.0].map(|share| share * opening / MM));
+    let remedy = remedy(" mm", plug / MM, [both, 1.0].map(|share| share * opening / MM));
     let ([plug, opening], name) = ([plug, opening].map(mm), ["x", "y"][axis]);
     let problem = format!("is {plug} mm wide in {name}, but the opening is {opening} mm wide");
     Some(Problem::new(widest_key(case, depth, axis)?, problem, remedy))

@@ -17,9 +17,14 @@ pub use reduced::ReducedArm;
 use crate::task::geometry::Axis;
 use contact::scene::{Inertia, Pose};
 use input::units::read::{deg, mm};
-use input::{Check, InputError};
+use input::units::{DEG, MM};
+use input::{Check, InputError, wrong_unit};
 use nalgebra::{Point3, Translation3, Unit, UnitQuaternion, Vector3};
 use serde::Deserialize;
+use std::f64::consts::PI;
+
+/// Range of the length of all links of an arm, mm.
+const REACH_MM: [f64; 2] = [100.0, 10_000.0];
 
 /// Number of joints of an arm.
 pub const JOINTS: usize = 6;
@@ -109,8 +114,16 @@ struct RawJoint {
 }
 
 impl RawArm {
-    /// Returns the arm after checking that it has six joints.
+    /// Returns the arm after checking its units and that it has six joints.
     pub fn arm(self, check: Check<'_>) -> Result<Arm, InputError> {
+        let reach = self.joint.iter().map(|joint| Vector3::from(joint.offset).norm()).sum::<f64>();
+        check
+            .unit("joint: all offset_mm together", wrong_unit::number("", reach / MM, REACH_MM))?;
+        // Whole numbers are degrees.
+        let radians = |angle: f64| wrong_unit::angle(angle / DEG, 2.0 * PI, 1.0);
+        if self.home.iter().all(|angle| angle.abs() < 2.0 * PI * DEG) {
+            check.unit("home_deg", self.home.into_iter().find_map(radians))?;
+        }
         let joints: Vec<Joint> = self.joint.into_iter().map(Joint::from).collect();
         let joints = <[Joint; JOINTS]>::try_from(joints).or_else(|joints| {
             check.fail("joint", format!("there are {} [[joint]]; an arm has six", joints.len()))

@@ -90,6 +90,9 @@ pub struct Evaluation {
     pub failure_counts: [u32; 4],
     /// Trials that diverged numerically.
     pub diverged: u32,
+    /// Trials that a protective stop of the robot ended, whatever their outcome.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub robot_stops: u32,
     /// Largest contact force between plug and socket over the inserted trials, N; NaN if none inserted.
     #[serde(deserialize_with = "null_is_nan")]
     pub peak_force_n: f64,
@@ -139,6 +142,13 @@ pub struct SuccessRate {
     /// Draws skipped because the [`Race`](robustness::race::Race) was lost before them.
     #[serde(rename = "success_spared_draws", default, skip_serializing_if = "is_zero")]
     pub skipped: u32,
+}
+
+impl Evaluation {
+    /// Returns whether a protective stop of the robot made the nominal start fail.
+    pub fn nominal_stop(&self) -> bool {
+        self.window.nominal != Outcome::Inserted && self.robot_stops > 0
+    }
 }
 
 fn is_zero(count: &u32) -> bool {

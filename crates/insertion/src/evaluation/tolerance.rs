@@ -116,6 +116,7 @@ impl Evaluation {
             window,
             failure_counts: [0; 4],
             diverged: 0,
+            robot_stops: 0,
             trials: 0,
             // There is no largest value before a trial inserts.
             peak_force_n: f64::NAN,
@@ -133,6 +134,7 @@ impl Evaluation {
         self.trials += trials.len() as u32;
         self.simulated_s += trials.iter().map(|trial| trial.simulated_s).sum::<f64>();
         for trial in trials {
+            self.robot_stops += u32::from(trial.robot_stopped);
             match trial.outcome {
                 Outcome::Inserted => {
                     self.peak_force_n = self.peak_force_n.max(trial.peak_force_n);

@@ -441,6 +441,7 @@ impl<'a> Attempt<'a> {
             tilt_deg: placement.tilt / DEG,
             peak_force_n: self.monitor.peak_force,
             slip_mm: self.slip() / MM,
+            robot_stopped: end == Err(Stop::ForceLimit),
             simulated_s: self.time,
             phases: self.phases,
             retried: false,

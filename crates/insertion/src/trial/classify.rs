@@ -1,8 +1,8 @@
 //! Classification of the outcome of a trial.
 //!
 //! 1. The part is seated (its tip in the opening, deep and upright enough) and held
-//!    by both fingers at rest after the assembly push, or where the force limit ended
-//!    it: inserted.
+//!    by both fingers at rest after the assembly push: inserted. A protective stop of the
+//!    robot during the push ends the trial; what it has seated by then counts alike.
 //! 2. The part left the grasp (both fingers off, or slipped beyond the task's
 //!    limit) before the search began: class 1; later: class 4. A seated
 //!    part without contact to one finger is class 4, too: pushed aside by more than twice

@@ -79,6 +79,7 @@ impl Grasped for (FakeRig, Grasp<'_>) {
             tilt_deg: 0.0,
             peak_force_n: 5.0 + offset_mm.abs(),
             slip_mm: 0.1,
+            robot_stopped: false,
             phases: Vec::new(),
             simulated_s: 1.0,
             retried: false,

@@ -90,6 +90,8 @@ pub struct Trial {
     pub peak_force_n: f64,
     /// Slip of the part in the grasp since the grasp, at the end, mm.
     pub slip_mm: f64,
+    /// Whether the robot ended the trial by a protective stop.
+    pub robot_stopped: bool,
     /// State at the end of each phase that was begun.
     pub phases: Vec<PhaseEnd>,
     /// Simulated time of the trial, s.

@@ -193,6 +193,7 @@ impl<'a> Prepared<'a> {
 mod tests {
     use super::super::Sample;
     use super::*;
+    use crate::evaluation::tolerance::{Search, evaluate};
     use crate::fixtures::{finger, refused, rig, robot, robot_file, task, task_file};
     use contact::World;
     use contact::direct::Direct;
@@ -239,6 +240,26 @@ mod tests {
         let after_the_grasp = grasped.trial(0.0);
         assert!(after_the_grasp.simulated_s < 1.5, "nothing but grasp and approach");
         assert_eq!(rig.record(grasp, 0.0).unwrap().trial.simulated_s, 0.0);
+    }
+
+    #[test]
+    fn a_protective_stop_is_reported_whatever_the_outcome() {
+        let usb = task("usb");
+        let soft = finger(1.18, 52.4).with_model(&usb.finger, 0.0);
+        // Without a stop the push ends with 107 N; from 85 N on the plug is seated.
+        for (stop_force, stopped, inserted) in
+            [(150.0, false, true), (100.0, true, true), (30.0, true, false)]
+        {
+            let limited = Robot { stop_force, ..robot("servo") };
+            let rig = EngineRig::new(usb.clone(), &limited, Box::<Direct>::default()).unwrap();
+            let trial = rig.grasp(Grasp::of(&soft)).trial(0.0);
+            let found = (trial.robot_stopped, trial.outcome == Outcome::Inserted);
+            assert_eq!(found, (stopped, inserted), "{stop_force} N: {trial:?}");
+        }
+        let weak = Robot { stop_force: 30.0, ..robot("servo") };
+        let rig = EngineRig::new(usb, &weak, Box::<Direct>::default()).unwrap();
+        let found = evaluate(&rig, &soft, Search::Strides);
+        assert_eq!((found.robot_stops, found.trials, found.nominal_stop()), (1, 1, true));
     }
 
     #[test]

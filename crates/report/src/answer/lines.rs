@@ -7,7 +7,7 @@ use calibration::rank_correlation::RankCorrelation;
 use insertion::evaluation::objective::Measure;
 use insertion::evaluation::robustness::firm::REPEATS;
 use insertion::evaluation::{Evaluation, grid_mm};
-use insertion::outcome::Outcome;
+use insertion::outcome::{Outcome, stop_words};
 use insertion::robot::Robot;
 use insertion::space::Variable;
 use insertion::surrogate::Prediction;
@@ -59,8 +59,8 @@ pub fn simulated(answer: &Answer, found: &Recommended) -> Vec<Line> {
     let of_task = |task: &OnTask| {
         let window = &task.measured.window;
         let [below, above] = [window.end_negative, window.end_positive].map(words::end);
-        let ends =
-            line("ends", format!("{below} below, {above} above{}", words::on(config, task.name)));
+        let (on, stops) = (words::on(config, task.name), stops(task.measured));
+        let ends = line("ends", format!("{below} below, {above} above{on}{stops}"));
         iter::once(ends).chain(drawn(task.measured)).collect::<Vec<_>>()
     };
     let tasks = found.design.tasks();
@@ -345,15 +345,22 @@ pub fn accuracy(found: &BenchPrediction) -> Line {
 pub fn window(evaluation: &Evaluation) -> Vec<Line> {
     let window = &evaluation.window;
     if window.nominal != Outcome::Inserted {
-        let nominal = window.nominal.label();
-        return vec![line("window", format!("none: the nominal start ends with {nominal}"))];
+        let (nominal, stop) = (window.nominal.label(), stop_words(evaluation.nominal_stop()));
+        let text = format!("none: the nominal start ends with {nominal}{stop}");
+        return vec![line("window", text)];
     }
     let end = |outcome: Option<Outcome>| outcome.map_or("limit of the search", Outcome::label);
     let [below, above] = [window.end_negative, window.end_positive].map(end);
     vec![
         line("window", format!("{} mm", span(ends_mm(window)))),
-        line("ends", format!("{below} below, {above} above")),
+        line("ends", format!("{below} below, {above} above{}", stops(evaluation))),
     ]
+}
+
+/// Returns the number of trials that a protective stop of the robot ended, in words; empty if there are none.
+fn stops(Evaluation { robot_stops, trials, .. }: &Evaluation) -> String {
+    let text = || format!("; robot stop in {robot_stops} of {trials} trials");
+    (*robot_stops > 0).then(text).unwrap_or_default()
 }
 
 /// Returns the predicted stiffness, its uncertainty, and whether it is an extrapolation.
@@ -388,9 +395,11 @@ pub fn by_ribs(found: &ByRibs) -> Vec<Line> {
 }
 
 /// Returns range, window and taught start in words.
-fn tolerated(Evaluation { window, taught, .. }: &Evaluation) -> String {
+fn tolerated(found: &Evaluation) -> String {
+    let Evaluation { window, taught, .. } = found;
     if window.nominal != Outcome::Inserted {
-        return format!("none: its nominal start ends with {}", window.nominal.label());
+        let (nominal, stop) = (window.nominal.label(), stop_words(found.nominal_stop()));
+        return format!("none: its nominal start ends with {nominal}{stop}");
     }
     let start =
         taught.map_or(String::new(), |steps| format!(", start taught {:+.1}", grid_mm(steps)));

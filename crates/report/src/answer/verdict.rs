@@ -3,8 +3,9 @@
 use super::words::{design as finger, evaluated, interval, mm, outcome, span};
 use super::{Answer, Recommended, Ties};
 use ask_tell::statistics::mean;
+use insertion::evaluation::Evaluation;
 use insertion::evaluation::objective::Measure;
-use insertion::outcome::Outcome;
+use insertion::outcome::stop_words;
 use insertion::space::Design;
 use study::{Recorded, StudyRecord, nearest};
 
@@ -47,8 +48,8 @@ pub enum Verdict<'a> {
         task: &'a str,
         /// The design that is nearest to inserting.
         nearest: &'a Recorded,
-        /// Its outcome at the nominal start.
-        fails: Option<Outcome>,
+        /// Its evaluation on the task.
+        fails: Option<&'a Evaluation>,
     },
     /// No design satisfies all constraints, or none has a value.
     NoneFeasible,
@@ -58,8 +59,7 @@ impl<'a> Verdict<'a> {
     pub(super) fn of(answer: &Answer<'a>) -> Self {
         if let Some((place, nearest)) = answer.record.unusable() {
             let task = answer.record.config.tasks().nth(place).unwrap_or_default();
-            let fails = nearest.on(place).map(|found| found.window.nominal);
-            return Verdict::NothingInserts { place, task, nearest, fails };
+            return Verdict::NothingInserts { place, task, nearest, fails: nearest.on(place) };
         }
         if let Some(best) = answer.record.on_bench.as_ref().and_then(|found| found.best.first()) {
             let design = &best.design;
@@ -149,8 +149,11 @@ pub fn expectation(answer: &Answer) -> String {
         return format!("expect {} ({low:.1} to {high:.1} at 80 %); {trust}", mm(range));
     }
     if let Verdict::NothingInserts { nearest, fails, .. } = &answer.verdict {
-        let fails =
-            fails.map_or("fails".to_owned(), |fails| format!("ends with {}", outcome(fails)));
+        let ends = |found: &&Evaluation| {
+            let stop = stop_words(found.nominal_stop());
+            format!("ends with {}{stop}", outcome(found.window.nominal))
+        };
+        let fails = fails.as_ref().map_or("fails".to_owned(), ends);
         return format!(
             "the nearest to inserting, {}, {fails} at the nominal start",
             finger(&nearest.design)

@@ -3,7 +3,7 @@
 use input::units::N_PER_MM;
 use insertion::evaluation::objective::{Measure, Objectives};
 use insertion::evaluation::{RobustRange, SuccessRate, Window};
-use insertion::outcome::Outcome;
+use insertion::outcome::{Outcome, STOP_REMEDY};
 use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design};
 use insertion::surrogate::Estimate;
 use study::{Recorded, StudyConfig, StudyRecord};
@@ -84,8 +84,11 @@ const REMEDIES: [&str; 5] = [
 ];
 
 /// Returns advice for a nominal start that ends with this outcome, as a sentence without a full stop.
-pub fn remedy(nominal: Outcome) -> &'static str {
-    REMEDIES[usize::from(nominal.failure().unwrap_or(0))]
+pub fn remedy(nominal: Outcome, robot_stopped: bool) -> &'static str {
+    match robot_stopped {
+        true => STOP_REMEDY,
+        false => REMEDIES[usize::from(nominal.failure().unwrap_or(0))],
+    }
 }
 
 /// Returns the outcome beyond an end of a window, in words; `None` if the search ended without a failure.

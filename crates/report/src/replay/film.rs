@@ -5,6 +5,7 @@ use crate::answer::words::rounded;
 use contact::scene::{Geom, Pose};
 use contact::{ContactPoint, shapes};
 use input::units::MM;
+use insertion::outcome::stop_words;
 use insertion::trial::record::Frame;
 use serde_json::{Value, json};
 
@@ -59,7 +60,7 @@ pub(super) fn data(film: &Film) -> Value {
     }
     json!({
         "label": film.label,
-        "outcome": trial.outcome.to_string(),
+        "outcome": trial.outcome.to_string() + stop_words(trial.robot_stopped),
         "kind": trial.outcome.word(),
         // Rounded like the times of the frames, so that it is not after the last one.
         "decided_s": rounded(recording.decided_s, 4),

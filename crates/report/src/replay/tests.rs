@@ -50,6 +50,7 @@ pub fn recording() -> Recording {
         tilt_deg: 0.0,
         peak_force_n: 20.0,
         slip_mm: 0.0,
+        robot_stopped: true,
         phases: vec![end],
         simulated_s: 1.0,
         retried: false,
@@ -69,7 +70,10 @@ fn a_page_contains_its_films_and_loads_nothing() {
     assert_eq!(page.matches("<script").count(), 2, "the data and the viewer");
     assert_eq!(page.matches("\"label\":").count(), 2);
     assert_eq!(data(&page).map(|data| data.matches("\"label\":").count()), Some(2));
-    assert!(page.contains("failed: jammed (class 3)") && page.contains("default-src 'none'"));
+    assert!(
+        page.contains("failed: jammed (class 3), robot stop at a limit")
+            && page.contains("default-src 'none'")
+    );
     assert!(page.len() < 600_000, "{} bytes", page.len());
 }
 

@@ -1,0 +1,52 @@
+//! Detection of numbers in a wrong unit.
+
+use crate::units::{DEG, without_unit};
+
+/// Problem and remedy of a number that is probably in a wrong unit: the bound that it violates, and the accepted values.
+pub type WrongUnit = [String; 2];
+
+/// Returns the units mistaken for this one, and their size in it.
+fn mistaken(unit: &str) -> &'static [(&'static str, f64)] {
+    match unit {
+        " N" => &[("kN", 1000.0), ("grams-force", 9.81e-3)],
+        " mm/s" => &[("m/s", 1000.0)],
+        _ => &[("metres", 1000.0), ("inches", 25.4), ("micrometres", 0.001), ("centimetres", 10.0)],
+    }
+}
+
+/// Checks that a number lies in its plausible range, in the unit of its key; a key without a unit is in mm.
+pub fn number(key: &str, value: f64, [low, high]: [f64; 2]) -> Option<WrongUnit> {
+    if (low..=high).contains(&value) {
+        return None;
+    }
+    let unit = Some(without_unit(key).1).filter(|unit| !unit.is_empty()).unwrap_or(" mm");
+    let (size, limit) = if value < low { ("less", low) } else { ("more", high) };
+    let shown = (value * 1e4).round() / 1e4;
+    let problem = format!("{shown}{unit} is {size} than the plausible {limit}{unit}");
+    Some([problem, remedy(unit, value, [low, high])])
+}
+
+/// Returns advice on a number outside its range: the unit in which it is inside, or the range.
+pub fn remedy(unit: &str, value: f64, [low, high]: [f64; 2]) -> String {
+    let within = |(_, factor): &&(&str, f64)| (low..=high).contains(&(value * factor));
+    match mistaken(unit).iter().find(within) {
+        Some((other, factor)) => format!(
+            "the unit is{unit}; if the number was in {other}, multiply by {factor}: {:.2}{unit}",
+            value * factor
+        ),
+        None => format!("between {low} and {high}{unit}"),
+    }
+}
+
+/// Checks that an angle, degrees, is not in radians: that its magnitude is at least `least`, or it is a multiple of
+/// `step`.
+pub fn angle(degrees: f64, least: f64, step: f64) -> Option<WrongUnit> {
+    let steps = degrees / step;
+    if degrees.abs() >= least || (steps - steps.round()).abs() < 1e-6 {
+        return None;
+    }
+    let [degrees, least] = [degrees, least].map(|angle| (angle * 1e4).round() / 1e4);
+    let problem = format!("{degrees} degrees is less than {least}: are these radians?");
+    let remedy = format!("angles are in degrees: {degrees} rad is {:.1} degrees", degrees / DEG);
+    Some([problem, remedy])
+}

@@ -383,11 +383,11 @@ fn the_best_designs_are_walked_beside_the_journal() {
 fn the_order_on_the_bench_says_whose_it_is() {
     let studies = Studies::new();
     let paper = studies.study("paper", 4, &["--no-confirm", "--verbose"]);
-    paper.says(&["on usb our validation ranked 11"]);
+    paper.says(&["(model 6.8 mm)", "ranks 11 fingers wrongly (Spearman -0.07)"]);
     for (name, other) in [("ribs", ["--finger-model", "computed"]), ("robot", ["--robot", "rigid"])]
     {
         let found = studies.study(name, 4, &[&other[..], &["--no-confirm", "--verbose"]].concat());
-        found.says_in_any_lines("our validation (paper fingers on servo) ranked");
+        found.says_in_any_lines("(model with paper fingers on servo 6.8 mm)");
     }
 }
 
@@ -443,5 +443,6 @@ fn the_next_command_names_the_file_of_ones_own_task() {
     let more = "--engine fake --budget 4 --no-levers --no-map --json --out";
     let found = optimize_line(&format!("--task {own} {more} {}", studies.word("s"))).json();
     let next = &found["answer"]["next"]["command"];
-    assert_eq!(next, &format!("optimize measure add bench.csv --task {own}"));
+    let options = "--measurements bench.csv --count 3 --engine fake";
+    assert_eq!(next, &format!("optimize next --task {own} {options}"));
 }

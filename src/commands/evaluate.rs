@@ -220,7 +220,8 @@ impl Evaluated {
         let range_mm = self.evaluation.window.range_mm();
         let apart = |ribs: &Evaluation| {
             let other_mm = ribs.window.range_mm();
-            range_mm.min(other_mm) < 0.5 * range_mm.max(other_mm)
+            lines::comparable(ribs, &self.evaluation)
+                && range_mm.min(other_mm) < 0.5 * range_mm.max(other_mm)
         };
         let remark = "the ranges differ by more than a factor of two: measure a finger before you rely on either";
         tasks.iter().any(apart).then_some(remark)
@@ -246,7 +247,8 @@ impl Evaluated {
         rest.push(("mating force".to_owned(), mating));
         rest.extend(lines::taught(evaluation.taught.map(grid_mm)));
         rest.extend(lines::drawn(evaluation));
-        rest.extend(self.computed.iter().flat_map(lines::by_ribs));
+        let by_ribs = |computed| lines::by_ribs(computed, (0, evaluation));
+        rest.extend(self.computed.as_ref().and_then(by_ribs));
         rest.extend(self.disagreement().map(|remark| (String::new(), remark.to_owned())));
         let text = format!(
             "{}{}{}time          {:.1} s\n",

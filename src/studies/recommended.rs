@@ -135,6 +135,7 @@ pub fn advice(answer: &Answer, dir: &Path) -> Value {
         "finger": answer.verdict.finger(),
         "force": force(answer),
         "trust": trust(&answer.trust),
+        "rank_correlations": answer.rank_correlations,
         "start": one.and_then(|found| found.start.as_ref()),
         "as_good": as_good.map(|as_good| equivalent(answer, as_good)),
         "next": {"command": command, "why": why.to_string()},

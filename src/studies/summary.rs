@@ -81,9 +81,9 @@ pub fn summary(ended: &Ended, answer: &Answer, analyses: &PostAnalysis) -> Value
     json
 }
 
-/// Returns levers with their summary sentence.
+/// Returns levers with their summary sentence and the ranges over uncertain parameters.
 pub(crate) fn levers_json(levers: &Levers) -> Value {
-    let mut json = json!({"sentence": levers.sentence()});
+    let mut json = json!({"sentence": levers.sentence(), "uncertainty": levers.uncertainty()});
     extend(&mut json, json!(levers));
     json
 }

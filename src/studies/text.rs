@@ -18,7 +18,11 @@ pub fn ended(ended: &Ended, answer: &Answer, all: bool) -> String {
 
 /// Returns the text of the analyses after a study.
 pub fn analyses(PostAnalysis { levers, robots, .. }: &PostAnalysis) -> String {
-    let levers = levers.iter().map(|levers| format!("levers        {}\n", levers.sentence()));
+    let levers = levers.iter().map(|levers| {
+        let uncertainty = levers.uncertainty();
+        let uncertainty = uncertainty.map(|text| format!("uncertain     {text}\n"));
+        uncertainty.unwrap_or_default() + &format!("levers        {}\n", levers.sentence())
+    });
     let robots = robots.iter().map(|found| format!("robot         {}\n", found.words()));
     layout::wrapped(&levers.chain(robots).collect::<String>())
 }

@@ -6,21 +6,41 @@ use ask_tell::statistics::{mean, spearman};
 use input::shipped::TASKS;
 use insertion::evaluation::objective::Measure;
 use insertion::finger::model::FingerModelKind;
-use serde::Deserialize;
+use insertion::space::Design;
+use serde::{Deserialize, Serialize};
 use study::StudyRecord;
 
 /// Simulated and measured ranges: some columns of the committed `results/reference/validation/validation.csv`.
 const VALIDATION: &str = include_str!("../../../data/simulated_ranges.csv");
 
-/// Rank correlation of simulated and measured ranges.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// Rank correlation of simulated and measured ranges on a task.
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct RankCorrelation {
+    /// Name of the task.
+    pub task: String,
     /// Spearman's coefficient, +1 for the same order, -1 for the opposite one.
     pub spearman: f64,
     /// Number of fingers.
+    #[serde(rename = "designs")]
     pub fingers: usize,
     /// Source of the simulated ranges, in words.
     pub source: &'static str,
+    /// Finger with the largest measured range.
+    pub best: ComparedFinger,
+}
+
+/// Finger with a simulated and a measured range.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ComparedFinger {
+    /// Its design.
+    #[serde(rename = "values")]
+    pub design: Design,
+    /// Simulated range, mm.
+    #[serde(rename = "simulated_range_mm")]
+    pub simulated_mm: f64,
+    /// Range measured on a robot, mm.
+    #[serde(rename = "measured_range_mm")]
+    pub measured_mm: f64,
 }
 
 /// Robot of the committed validation, whose fingers are those of the paper.
@@ -30,6 +50,8 @@ const VALIDATION_ROBOT: &str = "servo";
 #[derive(Deserialize)]
 struct ValidationRow {
     task: String,
+    infill_density_percent: f64,
+    infill_direction_deg: f64,
     range_mm: Option<f64>,
     bench_range_mm: Option<f64>,
 }
@@ -41,32 +63,51 @@ pub fn rank_correlation(record: &StudyRecord, task: usize) -> Option<RankCorrela
     let bench = of_task(name, BENCH);
     let pair = |bench: &Experiment| {
         let found = record.current().iter().find(|recorded| recorded.design == bench.design)?;
-        Some((Measure::Range.value(found.on(task)?)?, bench.range_mm?))
+        Some(ComparedFinger {
+            design: bench.design.clone(),
+            simulated_mm: Measure::Range.value(found.on(task)?)?,
+            measured_mm: bench.range_mm?,
+        })
     };
-    let own: Vec<(f64, f64)> = bench.iter().filter_map(pair).collect();
+    let own: Vec<ComparedFinger> = bench.iter().filter_map(pair).collect();
     let all = bench.iter().filter(|bench| bench.range_mm.is_some()).count();
     let config = &record.config;
     let like_validation =
         config.finger_model == FingerModelKind::Paper && config.robot == VALIDATION_ROBOT;
-    let (pairs, source) = match (own.len() == all, like_validation) {
-        (true, _) => (own, "this study"),
-        (false, true) => (validation(name), "our validation"),
-        (false, false) => (validation(name), "our validation (paper fingers on servo)"),
+    let (compared, source) = match (own.len() == all, like_validation) {
+        (true, _) => (own, "model in this study"),
+        (false, true) => (validation(name), "model"),
+        (false, false) => (validation(name), "model with paper fingers on servo"),
     };
-    Some(RankCorrelation { spearman: spearman(&pairs)?, fingers: pairs.len(), source })
+    let (spearman, fingers) = (spearman(&pairs(&compared))?, compared.len());
+    let widest = |a: &ComparedFinger, b: &ComparedFinger| a.measured_mm.total_cmp(&b.measured_mm);
+    let best = compared.into_iter().max_by(widest)?;
+    Some(RankCorrelation { task: name.to_owned(), spearman, fingers, source, best })
 }
 
-/// Returns the simulated and the measured range of each finger in the committed validation.
-fn validation(task: &str) -> Vec<(f64, f64)> {
+/// Returns the simulated and the measured ranges of fingers, mm.
+fn pairs(compared: &[ComparedFinger]) -> Vec<(f64, f64)> {
+    compared.iter().map(|finger| (finger.simulated_mm, finger.measured_mm)).collect()
+}
+
+/// Returns the fingers of the committed validation that have both ranges.
+fn validation(task: &str) -> Vec<ComparedFinger> {
     let rows = csv::Reader::from_reader(VALIDATION.as_bytes()).into_deserialize();
     let own = rows.flatten().filter(|row: &ValidationRow| row.task == task);
-    own.filter_map(|row| row.range_mm.zip(row.bench_range_mm)).collect()
+    let compared = |row: ValidationRow| {
+        Some(ComparedFinger {
+            design: Design::infill(row.infill_density_percent, row.infill_direction_deg),
+            simulated_mm: row.range_mm?,
+            measured_mm: row.bench_range_mm?,
+        })
+    };
+    own.filter_map(compared).collect()
 }
 
 /// Returns the smallest and the largest over the tasks of the mean of `|simulated - measured| / measured`, percent.
 pub fn errors_percent() -> [f64; 2] {
     let errors = TASKS.iter().filter_map(|task| {
-        let pairs = validation(task.name);
+        let pairs = pairs(&validation(task.name));
         let missed = pairs.iter().map(|(ours, bench)| (ours - bench).abs() / bench);
         mean(missed).map(|mean| 100.0 * mean)
     });
@@ -80,11 +121,11 @@ mod tests {
     /// Recomputes the table of the README from the committed ranges.
     #[test]
     fn the_committed_validation_has_these_rank_correlations() {
-        for (task, pairs, rank) in
+        for (task, fingers, rank) in
             [("ket8", 11, -0.62), ("ket12", 7, 0.85), ("rj45", 11, 0.58), ("usb", 11, -0.07)]
         {
-            let found = validation(task);
-            assert_eq!(found.len(), pairs, "{task}");
+            let found = pairs(&validation(task));
+            assert_eq!(found.len(), fingers, "{task}");
             assert!((spearman(&found).unwrap() - rank).abs() < 0.005, "{task}");
         }
         assert!(validation("mine").is_empty());

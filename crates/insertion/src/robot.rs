@@ -20,6 +20,10 @@ pub struct Robot {
     pub stop_force: f64,
 }
 
+/// Largest acceptable contact force as a share of a robot's stop force: an assumption, since the scatter of peak forces
+/// on robots is unknown.
+pub const STOP_SHARE: f64 = 0.9;
+
 /// Dynamic model of a robot's flange.
 #[derive(Debug, Clone, PartialEq)]
 pub enum FlangeModel<A> {
@@ -96,6 +100,12 @@ impl Robot {
                 "the robot `{name}` does not yield: a real one has lower contact forces; it stops above {stop_force} N"
             )
         })
+    }
+
+    /// Returns the largest acceptable contact force, N: the smaller of the connector's limit, if it has one, and the
+    /// acceptable share of the stop force.
+    pub fn acceptable_force(&self, connector: Option<f64>) -> f64 {
+        connector.unwrap_or(f64::INFINITY).min(STOP_SHARE * self.stop_force)
     }
 
     /// Returns the robot at the start of a task whose frame is turned by `turn` about the

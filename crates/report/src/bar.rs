@@ -87,13 +87,14 @@ fn rows(answer: &Answer, found: &Recommended, (at, task): (usize, &OnTask)) -> V
         None => Bar::simulated(&task.measured.window, task.firm.and_then(|firm| firm.window_mm())),
     }];
     if let Some(by_ribs) = found.by_ribs.filter(|_| other.is_none()) {
-        let text = lines::by_ribs(by_ribs).into_iter().nth(at);
-        let text = text.map_or(String::new(), |(name, text)| format!("{name}: {text}"));
-        let window = match by_ribs {
-            ByRibs::Measured(tasks) => tasks.get(at).map(|task| ("ribs", ends_mm(&task.window))),
+        let ribs = match by_ribs {
+            ByRibs::Measured(tasks) => tasks.get(at),
             ByRibs::Refused(_) => None,
         };
-        rows.push(Bar::placed(text, window.into_iter().collect(), None));
+        let shown = ribs.filter(|ribs| lines::comparable(ribs, task.measured));
+        let parts = shown.map(|ribs| ("ribs", ends_mm(&ribs.window))).into_iter().collect();
+        let text = lines::by_ribs(by_ribs, (at, task.measured));
+        rows.extend(text.map(|(name, text)| Bar::placed(format!("{name}: {text}"), parts, None)));
     }
     if let Trust::Published { nearest } = &answer.trust {
         rows.extend(nearest.get(at).iter().flat_map(|(_, fingers)| fingers).map(published));

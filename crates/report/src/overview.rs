@@ -9,6 +9,7 @@ use super::replay::{ENDS, pair_file, player};
 use super::{bar, explore};
 use crate::answer::words::{design, evaluated, on, outcome, remedy};
 use crate::answer::{Answer, Verdict, command, expectation, lines};
+use analysis::levers::Levers;
 use finray::export::sheet;
 use insertion::evaluation::{Evaluation, grid_mm};
 use insertion::outcome::{FailureClass, Outcome, stop_words};
@@ -18,6 +19,7 @@ use study::Recorded;
 /// Returns the first screen, above all sections.
 pub(super) fn screen(answer: &Answer, files: &PageFiles) -> Markup {
     let (command, why) = command::next(answer, &files.dir);
+    let uncertainty = files.analyses.levers.as_ref().and_then(Levers::uncertainty);
     html! {
         header {
             p.muted { (lines::searched(answer)) " · " (answer.record.config.robot) }
@@ -25,8 +27,10 @@ pub(super) fn screen(answer: &Answer, files: &PageFiles) -> Markup {
             h1 { (answer.headline()) }
             p.lead {
                 (explained(&expectation(answer))) ". "
+                @if let Some(text) = uncertainty { "Uncertain: " (text) ". " }
                 @if answer.verdict.finger().is_some() { span.trust { (answer.trust.label()) } }
             }
+            @for (_, text) in lines::measured(answer) { p.muted { "Measured: " (text) "." } }
             // With measurements the finger is chosen by predictions for the bench.
             @if let Some((_, text)) = lines::widest(answer).filter(|_| answer.record.on_bench.is_none()) {
                 p.muted { "Widest in the search: " (explained(&text)) "." }

@@ -19,7 +19,7 @@ use serde_json::json;
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::OnceLock;
-use study::{Provenance, Recorded, Segment, StudyConfig, StudyRecord, Timing, Walked};
+use study::{ByRibs, Provenance, Recorded, Segment, StudyConfig, StudyRecord, Timing, Walked};
 
 fn finray9() -> PrintedFinger {
     PrintedFinger::parse(FINGERS[0].text, FINGERS[0].file).unwrap()
@@ -185,11 +185,28 @@ fn a_measured_design_shows_its_range_on_a_robot() {
     let html = whole(&record(vec![walked(0, [20.0, 20.0])]));
     assert!(html.contains("measured on a robot, 20 % infill at 20°: 4.1 mm"));
     assert!(html.contains("<td>4.1 mm</td>"));
+    assert!(html.contains("Measured: best 30 % infill at 20°: 6.1 mm (model"));
+    assert!(html.contains("ranks 11 fingers wrongly (Spearman -0.07): optimize next"));
     let (_, ranges) = html.split_once("Ranges without their ends").expect("ranges below the scale");
     let (name, bar) = ranges.split_once("<div class=\"track range\">").expect("a bar");
     let (bar, _) = bar.split_once("</div>").expect("its end");
     assert!(name.contains("20°: 4.1 mm, ends not recorded") && bar.contains("left:0.0%"), "{bar}");
     assert!(!bar.contains("<b"), "no start to be offset from: {bar}");
+}
+
+#[test]
+fn windows_about_a_given_and_a_taught_start_are_not_compared() {
+    let given = walked(0, [20.0, 20.0]).tasks.remove(0);
+    let taught = Evaluation { taught: Some(5), ..given.clone() };
+    let text = |ribs: &Evaluation, measured: &Evaluation| {
+        let ribs = ByRibs::Measured(vec![ribs.clone()]);
+        crate::answer::lines::by_ribs(&ribs, (0, measured)).unwrap().1
+    };
+    assert!(text(&taught, &given).starts_with("not compared"));
+    let range = words::mm(given.window.range_mm());
+    for same in [&given, &taught] {
+        assert!(text(same, same).starts_with(&range), "{}", text(same, same));
+    }
 }
 
 #[test]

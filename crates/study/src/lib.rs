@@ -37,7 +37,7 @@ pub use confirmer::{ConfirmationLog, ConfirmationStep, Confirmer};
 pub use error::StudyError;
 pub use folder::{CELL, FINGER, Inputs, Study, has_begun, input_path, read_analysis, read_config};
 pub use folder::{sha256, write_analysis, write_file, write_own_file};
-pub use limits::{ForceLimits, STOP_SHARE};
+pub use limits::ForceLimits;
 pub use line::{decode, encode};
 pub use on_bench::{BENCH_FILE, BenchFinger, BenchPrediction, LeaveOneOut};
 pub use provenance::{BENCH_ROLES, Provenance, SOURCES, Segment};

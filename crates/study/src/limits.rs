@@ -4,10 +4,6 @@ use super::folder::Inputs;
 use insertion::robot::Robot;
 use insertion::task::Task;
 
-/// Largest acceptable force as a share of a robot's stop force: an assumption, since the scatter of peak forces
-/// on robots is unknown.
-pub const STOP_SHARE: f64 = 0.9;
-
 /// Largest contact forces of a study, N.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct ForceLimits {
@@ -39,8 +35,8 @@ impl ForceLimits {
 
     /// Returns the largest acceptable force on a task, by its index; infinite if there is none.
     pub fn acceptable(&self, task: usize) -> f64 {
-        let connector = self.connectors.get(task).copied().flatten().unwrap_or(f64::INFINITY);
-        let stop = self.robot.as_ref().map(|robot| STOP_SHARE * robot.stop_force);
-        stop.map_or(connector, |stop| connector.min(stop))
+        let connector = self.connectors.get(task).copied().flatten();
+        let of_robot = self.robot.as_ref().map(|robot| robot.acceptable_force(connector));
+        of_robot.or(connector).unwrap_or(f64::INFINITY)
     }
 }

@@ -83,6 +83,13 @@ impl Lever {
     }
 }
 
+/// Start of the paths of parameters that a user sets; the others are uncertain.
+const OF_USER: [&str; 2] = ["task.strategy.", "task.grip."];
+/// Largest number of uncertain parameters that are named.
+const UNCERTAIN: usize = 2;
+/// Advice if no single lever widens the window.
+const TUNE: &str = "Together they were not tried: optimize task tune.";
+
 impl Levers {
     /// Returns whether the shipped space `codesign` varies a lever, the task has all parameters of that space, and the
     /// design does not set any of them already.
@@ -95,6 +102,23 @@ impl Levers {
             of_task().all(|of| tried(&of.key)) && of_task().any(|of| of.key == lever.key)
         };
         !self.design.changes_task() && codesign.is_some_and(has)
+    }
+
+    /// Names the smallest ranges over the parameters that a user does not set, such as friction, smallest first; `None`
+    /// if none of them narrows the window.
+    pub fn uncertainty(&self) -> Option<String> {
+        let of_user = |lever: &&Lever| OF_USER.iter().any(|path| lever.key.starts_with(path));
+        let least = |lever: &Lever| {
+            let [low, high] = lever.ends.map(|end| end.unwrap_or(0.0));
+            let (mm, at) = if high < low { (high, lever.high) } else { (low, lever.low) };
+            (mm, format!("{mm:.1} mm with {} {}", lever.name, lever.amount(at)))
+        };
+        let mut found: Vec<_> =
+            self.levers.iter().filter(|lever| !of_user(lever)).map(least).collect();
+        found.retain(|(mm, _)| is_relevant(difference_mm([*mm, self.base.range_mm])));
+        found.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+        let texts: Vec<_> = found.into_iter().take(UNCERTAIN).map(|(_, text)| text).collect();
+        (!texts.is_empty()).then(|| texts.join(", "))
     }
 
     /// Summarises the most effective change besides the infill in one sentence; effects below 0.3 mm are
@@ -114,20 +138,24 @@ impl Levers {
         match (most(1.0), most(-1.0)) {
             (Some((by, lever, end)), _) => {
                 let more = match self.is_in_codesign(lever) {
-                    true => " --space codesign varies such numbers with the infill.",
+                    true => "; --space codesign searches it",
                     false => "",
                 };
-                format!("{} widens {task} by {by:.1} mm.{more}", lever.step(end))
+                format!("{} widens {task} by {by:.1} mm{more}.", lever.step(end))
             }
             (None, Some((by, lever, end))) => format!(
-                "Nothing widens {task} by {INDIFFERENCE_MM} mm, and {} narrows it by {:.1} mm.",
+                "Alone, nothing widens {task} by {INDIFFERENCE_MM} mm, and {} narrows it by {:.1} mm. {TUNE}",
                 lever.step(end),
                 -by
             ),
             (None, None) if is_relevant(difference_mm(self.infill)) => {
-                format!("Nothing but the infill moves {task} by {INDIFFERENCE_MM} mm.")
+                format!(
+                    "Alone, nothing but the infill moves {task} by {INDIFFERENCE_MM} mm. {TUNE}"
+                )
             }
-            (None, None) => format!("Nothing tried moves {task} by {INDIFFERENCE_MM} mm."),
+            (None, None) => {
+                format!("Alone, nothing tried moves {task} by {INDIFFERENCE_MM} mm. {TUNE}")
+            }
         }
     }
 }

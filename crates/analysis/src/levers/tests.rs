@@ -23,21 +23,39 @@ fn the_sentence_names_the_most_effective_lever_and_ignores_small_effects() {
         (
             [4.0; 2],
             vec![about_zero()],
-            "Nothing widens usb by 0.3 mm, and -5 mm of tilt narrows it by 3.0 mm.",
+            "Alone, nothing widens usb by 0.3 mm, and -5 mm of tilt narrows it by 3.0 mm.",
         ),
         ([3.6, 4.0], vec![tilt()], "5 mm more tilt widens usb by 0.9 mm."),
         ([3.8, 4.0], vec![little(), tilt()], "5 mm more tilt widens usb by 0.9 mm."),
-        ([3.7, 4.0], vec![little()], "Nothing but the infill moves usb by 0.3 mm."),
+        ([3.7, 4.0], vec![little()], "Alone, nothing but the infill moves usb by 0.3 mm."),
         ([4.0; 2], vec![little(), just()], "5 mm more grip force widens usb by 0.3 mm."),
         (
             [4.0; 2],
             vec![stroke(), little()],
-            "Nothing widens usb by 0.3 mm, and 4 mm more stroke narrows it by 4.0 mm.",
+            "Alone, nothing widens usb by 0.3 mm, and 4 mm more stroke narrows it by 4.0 mm.",
         ),
-        ([3.9, 4.0], vec![little()], "Nothing tried moves usb by 0.3 mm."),
+        ([3.9, 4.0], vec![little()], "Alone, nothing tried moves usb by 0.3 mm."),
     ] {
-        assert_eq!(of(infill, levers).sentence(), said);
+        let tune = if said.starts_with("Alone") { format!(" {TUNE}") } else { String::new() };
+        assert_eq!(of(infill, levers).sentence(), format!("{said}{tune}"));
     }
+}
+
+#[test]
+fn the_uncertainty_names_the_smallest_ranges_over_what_a_user_does_not_set() {
+    let friction = |ends| Lever {
+        name: "friction".to_owned(),
+        unit: String::new(),
+        ..lever("task.friction.plug_socket", [0.1, 0.2, 0.4], ends)
+    };
+    let stiffness = lever("robot.stiffness_n_per_mm", [4.0, 10.0, 100.0], [None, Some(4.5)]);
+    let tilt = lever("task.strategy.tilt_deg", [0.0, 5.0, 10.0], [Some(0.5), Some(1.0)]);
+    let levers = |ends| of([4.0; 2], vec![friction(ends), tilt.clone(), stiffness.clone()]);
+    let known = "0.0 mm with robot.stiffness_n_per_mm 4 mm";
+    let said = levers([Some(2.0), Some(1.5)]).uncertainty().unwrap();
+    assert_eq!(said, format!("{known}, 1.5 mm with friction 0.4"));
+    assert_eq!(levers([Some(3.8), Some(4.9)]).uncertainty().as_deref(), Some(known));
+    assert_eq!(of([4.0; 2], vec![tilt.clone()]).uncertainty(), None);
 }
 
 /// The space `codesign` is suggested only if it varies the best lever, the task has all of its parameters, and the

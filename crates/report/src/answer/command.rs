@@ -40,6 +40,18 @@ impl InputArguments<'_> {
         let files = &self.record.config.conclusion.task_files;
         files.get(place).filter(|file| own && file.ends_with(".toml")).map(shell_word)
     }
+
+    /// Returns the measurements of the study: a shipped name, the user's file, or its copy.
+    fn measurements(&self) -> String {
+        let shipped = self.shipped("measurements", MEASUREMENTS).map(str::to_owned);
+        let own = || self.record.config.conclusion.measurements.as_ref().map(shell_word);
+        shipped.or_else(own).unwrap_or_else(|| self.input("measurements", MEASUREMENTS))
+    }
+
+    /// Returns the options from the space to the engine that are not the defaults.
+    fn changed_setup(&self) -> Vec<String> {
+        setup(self).into_iter().filter(|word| !DEFAULTS.contains(&word.as_str())).collect()
+    }
 }
 
 /// Number of fingers to print at a time.
@@ -61,30 +73,32 @@ pub fn next(answer: &Answer, dir: &Path) -> (String, &'static str) {
             format!("optimize report {folder}"),
             "see by how much each design violates the constraints",
         ),
-        (_, Trust::Calibrated { .. } | Trust::Published { .. }) if !several => {
-            let given = &answer.record.config.conclusion.measurements;
-            let shipped = match answer.record.on_bench {
-                None => Some(MEASUREMENTS[0].name),
-                Some(_) => inputs.shipped("measurements", MEASUREMENTS),
-            };
-            let file = shipped.map(str::to_owned).or(given.as_ref().map(shell_word));
-            let file = file.unwrap_or_else(|| inputs.input("measurements", MEASUREMENTS));
-            let options = format!("--task {task} --measurements {file} --count {PRINTS}");
-            let why = match (&answer.verdict, &answer.record.on_bench) {
-                (Verdict::MeasuredBefore { .. }, _) => {
-                    "check whether printing another finger is worth it"
-                }
-                (_, Some(_)) => "choose the prints with the largest expected gain",
-                (_, None) => "choose the first prints from measurements as well",
-            };
-            (format!("optimize next {options}"), why)
+        _ if several => {
+            ("optimize measure add bench.csv".to_owned(), "enter the measurements of your robot")
         }
-        _ => {
-            let task = if several { String::new() } else { format!(" --task {task}") };
-            (
-                format!("optimize measure add bench.csv{task}"),
-                "enter the measurements of your robot",
-            )
+        (verdict, trust) => {
+            let mut setup = inputs.changed_setup();
+            let (file, why) = match (verdict, trust) {
+                (Verdict::MeasuredBefore { .. }, _) => {
+                    (inputs.measurements(), "check whether printing another finger is worth it")
+                }
+                (_, Trust::Calibrated { .. }) => {
+                    (inputs.measurements(), "choose the prints with the largest expected gain")
+                }
+                (_, Trust::Published { .. }) => {
+                    // Another space may not contain the published fingers.
+                    setup.retain(|word| !word.starts_with("--space "));
+                    let why = "choose the first prints from measurements as well";
+                    (MEASUREMENTS[0].name.to_owned(), why)
+                }
+                (_, Trust::Simulated { .. }) => (
+                    "bench.csv".to_owned(),
+                    "choose the first prints; optimize measure add takes their ranges",
+                ),
+            };
+            let options = format!("--task {task} --measurements {file} --count {PRINTS}");
+            setup.insert(0, format!("optimize next {options}"));
+            (setup.join(" "), why)
         }
     }
 }
@@ -139,14 +153,12 @@ pub fn rerun(record: &StudyRecord) -> Vec<String> {
 /// folder.
 pub fn trial(record: &StudyRecord, dir: &Path) -> String {
     let inputs = InputArguments { record, dir };
-    let mut words =
-        vec!["optimize trial".to_owned(), format!("--task {}", inputs.input("task_1", TASKS))];
-    words.extend(setup(&inputs).into_iter().filter(|word| !DEFAULTS.contains(&word.as_str())));
-    words.join(" ")
+    let task = format!("optimize trial --task {}", inputs.input("task_1", TASKS));
+    [vec![task], inputs.changed_setup()].concat().join(" ")
 }
 
-/// Default options of a trial, which are omitted.
-const DEFAULTS: [&str; 2] = ["--space infill", "--robot servo"];
+/// Default options of the setup.
+const DEFAULTS: [&str; 3] = ["--space infill", "--robot servo", "--finger-model paper"];
 
 /// Returns the options from the space to the engine.
 fn setup(inputs: &InputArguments) -> Vec<String> {

@@ -2,8 +2,9 @@
 
 use insertion::evaluation::Evaluation;
 use insertion::evaluation::objective::Measure;
+use insertion::robot::STOP_SHARE;
 use serde::Serialize;
-use study::{STOP_SHARE, StudyRecord};
+use study::StudyRecord;
 
 /// Contact force above the limit of a connector, or above the acceptable share of the force at which the robot stops.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -9,7 +9,7 @@ use insertion::evaluation::robustness::firm::REPEATS;
 use insertion::evaluation::{Evaluation, grid_mm};
 use insertion::outcome::{Outcome, stop_words};
 use insertion::robot::Robot;
-use insertion::space::Variable;
+use insertion::space::{Design, Variable};
 use insertion::surrogate::Prediction;
 use parameters::label;
 use std::iter;
@@ -25,7 +25,8 @@ fn line(name: &str, text: impl Into<String>) -> Line {
 /// Returns the short form of the answer: the lines below its headline and the expected performance.
 pub fn brief(answer: &Answer) -> Vec<Line> {
     let record = answer.record;
-    let mut lines: Vec<Line> = record.on_bench.iter().flat_map(on_bench).collect();
+    let mut lines = measured(answer);
+    lines.extend(record.on_bench.iter().flat_map(on_bench));
     lines.extend(caveats(answer));
     if let Some(found) = simulated_finger(answer) {
         lines.extend(simulated(answer, found));
@@ -43,6 +44,35 @@ pub fn brief(answer: &Answer) -> Vec<Line> {
         lines.push(line("segment", text));
     }
     lines
+}
+
+/// Returns the measured finger with the largest range. Without measurements of the user it is a published one, with its
+/// simulated range and whether the simulation ranks the published fingers like the robot.
+pub fn measured(answer: &Answer) -> Vec<Line> {
+    let best =
+        |design: &Design, mm: f64| format!("best {}: {}", words::design(design), self::mm(mm));
+    let compared = |found: &RankCorrelation| {
+        let RankCorrelation { spearman, fingers, source, best: finger, .. } = found;
+        // A random order of n fingers has a rank correlation of mean 0 and variance 1 / (n - 1), taken as
+        // normal: it exceeds this bound in less than 5 % of cases.
+        let (order, advice) = match spearman * (*fingers as f64 - 1.0).sqrt() > 1.645 {
+            true => ("like the robot", ""),
+            false => ("wrongly", ": optimize next"),
+        };
+        let on = words::on(&answer.record.config, &found.task);
+        let (best, model) = (best(&finger.design, finger.measured_mm), mm(finger.simulated_mm));
+        let ranking =
+            format!("the model ranks {fingers} fingers {order} (Spearman {spearman:+.2})");
+        line("measured", format!("{best}{on} ({source} {model}); {ranking}{advice}"))
+    };
+    if answer.verdict.finger().is_none() {
+        return Vec::new();
+    }
+    if answer.record.on_bench.is_none() {
+        return answer.rank_correlations.iter().map(compared).collect();
+    }
+    let widest = answer.measured.iter().max_by(|(_, a), (_, b)| a.total_cmp(b));
+    widest.map(|(design, mm)| line("measured", best(design, *mm))).into_iter().collect()
 }
 
 /// Returns the recommended design; `None` if measurements were used, for a Pareto front, or without a finger to print.
@@ -213,7 +243,7 @@ pub fn spread(answer: &Answer) -> Option<Line> {
         0 => format!(" over {of} designs"),
         _ => format!("; {failing} of {of} designs fail at the start"),
     };
-    Some(line("infill", format!("changes the range from {spread}{others}")))
+    Some(line("infill", format!("range {spread}{others}")))
 }
 
 /// Returns the parameters of the finger to print that have the least or the largest value of the space; `None` if there
@@ -239,7 +269,7 @@ pub fn recommended(answer: &Answer, found: &Recommended) -> Vec<Line> {
     let mut lines = vec![line("best design", evaluated(found.design))];
     lines.extend(found.firm_range_mm.map(|range_mm| {
         let text = format!("{}: inserts in {REPEATS} of {REPEATS} repeats", mm(range_mm));
-        line("firm range", format!("{text} with varied friction, start and time step"))
+        line("firm range", format!("{text} with slightly varied friction, start and time step"))
     }));
     if let Some((measure, value)) = found.objective {
         let of =
@@ -258,11 +288,12 @@ pub fn recommended(answer: &Answer, found: &Recommended) -> Vec<Line> {
             line("peak force", format!("{peak} between plug and socket in the trials that insert"))
         }));
     }
-    let by_ribs = found.by_ribs.map(by_ribs).unwrap_or_default();
-    let several = by_ribs.len() > 1;
-    lines.extend(by_ribs.into_iter().zip(&found.tasks).map(|((name, text), task)| {
-        (name, if several { format!("{text} on {}", task.name) } else { text })
-    }));
+    if let Some(ribs) = found.by_ribs {
+        lines.extend(found.tasks.iter().enumerate().filter_map(|(at, task)| {
+            let (name, text) = by_ribs(ribs, (at, task.measured))?;
+            Some((name, text + &words::on(config, task.name)))
+        }));
+    }
     lines.extend(stiffness(&found.design.stiffness));
     if let Some((measure, _)) = found.objective.filter(|_| !answer.walked.is_empty()) {
         let mut same = answer.record.current().iter().filter(|of| of.index == found.design.index);
@@ -281,7 +312,6 @@ pub fn recommended(answer: &Answer, found: &Recommended) -> Vec<Line> {
         line(&format!("  {reason}"), format!("{}: {value:.1} {unit}", evaluated(found)))
     }));
     lines.extend(raced(answer));
-    lines.extend(answer.rank_correlations.iter().map(robot));
     if answer.rank_correlations.is_empty() && answer.record.on_bench.is_none() {
         lines.push(line("robot", "no measurements are known: print and measure the best few"));
     }
@@ -300,21 +330,6 @@ fn raced(answer: &Answer) -> Option<Line> {
             format!("{designs} of {of} designs ended early, after {mean:.0} draws on average");
         line("raced", format!("{early}: they could not reach the best"))
     })
-}
-
-/// Returns the rank correlation of simulated and measured ranges on a task.
-fn robot((task, found): &(&str, RankCorrelation)) -> Line {
-    // A random order of n fingers has a rank correlation of mean 0 and variance 1 / (n - 1), taken as
-    // normal: it exceeds this bound in less than 5 % of cases.
-    let beyond_chance = found.spearman * (found.fingers as f64 - 1.0).sqrt() > 1.645;
-    let chance = if beyond_chance { "" } else { "; not significant: measure the best few" };
-    line(
-        "robot",
-        format!(
-            "on {task} {} ranked {} printed fingers with Spearman {:+.2} to the bench{chance}",
-            found.source, found.fingers, found.spearman
-        ),
-    )
 }
 
 /// Returns the probability that the finger is the best on the bench, and its simulated window.
@@ -385,26 +400,32 @@ pub fn drawn(evaluation: &Evaluation) -> Vec<Line> {
     success.into_iter().flatten().chain(robust).collect()
 }
 
-/// Returns the window with stiffness computed from the ribs, task by task.
-pub fn by_ribs(found: &ByRibs) -> Vec<Line> {
-    let texts = match found {
-        ByRibs::Refused(why) => vec![why.clone()],
-        ByRibs::Measured(tasks) => tasks.iter().map(tolerated).collect(),
-    };
-    texts.into_iter().map(|text| line("from its ribs", text)).collect()
+/// Returns whether the window with stiffness computed from the ribs has the same kind of start as that with the measured
+/// stiffness. If it fails at the given start, its start was taught: its window is the nearest one, however narrow.
+pub fn comparable(ribs: &Evaluation, measured: &Evaluation) -> bool {
+    ribs.taught.is_none() || measured.taught.is_some()
 }
 
-/// Returns range, window and taught start in words.
-fn tolerated(found: &Evaluation) -> String {
-    let Evaluation { window, taught, .. } = found;
-    if window.nominal != Outcome::Inserted {
-        let (nominal, stop) = (window.nominal.label(), stop_words(found.nominal_stop()));
-        return format!("none: its nominal start ends with {nominal}{stop}");
-    }
-    let start =
-        taught.map_or(String::new(), |steps| format!(", start taught {:+.1}", grid_mm(steps)));
-    let (range, ends) = (mm(window.range_mm()), span(ends_mm(window)));
-    format!("{range} ({ends}{start})")
+/// Returns the window with stiffness computed from the ribs on the task with index `at`, whose evaluation with the
+/// measured stiffness is given.
+pub fn by_ribs(found: &ByRibs, (at, measured): (usize, &Evaluation)) -> Option<Line> {
+    let tasks = match found {
+        ByRibs::Refused(why) => return (at == 0).then(|| line("from its ribs", why)),
+        ByRibs::Measured(tasks) => tasks,
+    };
+    let ribs = tasks.get(at)?;
+    let window = &ribs.window;
+    let text = if window.nominal != Outcome::Inserted {
+        let (nominal, stop) = (window.nominal.label(), stop_words(ribs.nominal_stop()));
+        format!("none: its nominal start ends with {nominal}{stop}")
+    } else if !comparable(ribs, measured) {
+        "not compared: it fails at the given start".to_owned()
+    } else {
+        let start = ribs.taught.map(|steps| format!(", start taught {:+.1}", grid_mm(steps)));
+        let (range, ends) = (mm(window.range_mm()), span(ends_mm(window)));
+        format!("{range} ({ends}{})", start.unwrap_or_default())
+    };
+    Some(line("from its ribs", text))
 }
 
 /// Returns the position of a taught start relative to that of the task file, `mm`; `None` if it was not taught.

@@ -54,8 +54,8 @@ pub struct Answer<'a> {
     pub measured: Vec<MeasuredFinger>,
     /// Contact force of the finger to print, if it exceeds a limit of connector or robot.
     pub force: Option<ExcessForce>,
-    /// Rank correlation of simulated and measured ranges, for each task with measurements.
-    pub rank_correlations: Vec<(&'a str, RankCorrelation)>,
+    /// Rank correlation of simulated and published ranges, for each task with measurements.
+    pub rank_correlations: Vec<RankCorrelation>,
 }
 
 /// Pareto front: no design dominates another.
@@ -73,7 +73,6 @@ impl<'a> Answer<'a> {
         let (config, current) = (&record.config, record.current());
         let front = || Front { designs: record.front(), volume: volume(&config.goals(), current) };
         let walked = |walked: &'a Walked| (&walked.recorded, firm_range_mm(record, walked));
-        let correlation = |(at, task)| Some((task, rank_correlation(record, at)?));
         let measured = match (&record.on_bench, &config.tasks[..]) {
             (Some(bench), _) => bench.ranges.clone(),
             (None, [task]) => trust::published(task).into_iter().map(|(found, _)| found).collect(),
@@ -92,7 +91,9 @@ impl<'a> Answer<'a> {
             spread_mm: record.spread_mm(),
             measured,
             force: None,
-            rank_correlations: config.tasks().enumerate().filter_map(correlation).collect(),
+            rank_correlations: (0..config.tasks.len())
+                .filter_map(|task| rank_correlation(record, task))
+                .collect(),
         };
         answer.verdict = Verdict::of(&answer);
         answer.trust = Trust::of(record, answer.design_to_print());

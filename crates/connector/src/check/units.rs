@@ -1,9 +1,9 @@
 //! Checks of the units of a task file: lengths in mm, angles in degrees.
 
-use super::{Problem, TaskBodies, part_key, widest_key};
+use super::{Problem, TaskBodies, mm, part_key, widest_key};
 use crate::body::{longest_side, width};
 use crate::seat::section;
-use input::units::{DEG, MM, mm};
+use input::units::{DEG, MM};
 use insertion::task::Ending;
 use nalgebra::Vector3;
 
@@ -16,11 +16,11 @@ const UNITS: [(&str, f64); 4] =
 
 /// Smallest plausible widths of a plug as shares of its opening: in both directions, and in one. Shipped tasks have at
 /// least 0.6, a flat pin in a round hole 0.1.
-const LEAST_SHARE: [f64; 2] = [1.0 / 8.0, 1.0 / 20.0];
+const MIN_SHARE: [f64; 2] = [1.0 / 8.0, 1.0 / 20.0];
 /// Largest plausible width of a plug as a share of its opening, in both directions.
-const MOST_SHARE: f64 = 8.0;
+const MAX_SHARE: f64 = 8.0;
 /// Smallest plausible tilt except 0, degrees. Smaller numbers are angles up to 15 degrees, in radians.
-const LEAST_TILT_DEG: f64 = 0.27;
+const MIN_TILT_DEG: f64 = 0.27;
 
 /// Checks lengths and angles for a wrong unit.
 pub(super) fn problems(case: &TaskBodies) -> Vec<Problem> {
@@ -96,10 +96,10 @@ fn remedy(value_mm: f64, [low, high]: [f64; 2]) -> String {
 /// Checks that an angle, rad, is 0 or large enough to be in degrees.
 fn angle(key: &str, angle: f64) -> Option<Problem> {
     let degrees = (angle / DEG * 1e4).round() / 1e4;
-    if angle == 0.0 || degrees.abs() >= LEAST_TILT_DEG {
+    if angle == 0.0 || degrees.abs() >= MIN_TILT_DEG {
         return None;
     }
-    let problem = format!("{degrees} degrees is less than {LEAST_TILT_DEG}: are these radians?");
+    let problem = format!("{degrees} degrees is less than {MIN_TILT_DEG}: are these radians?");
     let remedy = format!("angles are in degrees: {degrees} rad is {:.1} degrees", degrees / DEG);
     Some(Problem::new(key, problem, remedy))
 }
@@ -110,8 +110,8 @@ fn other_unit(case: &TaskBodies) -> Option<Problem> {
     let [plug, opening] = [section(&case.plug, depth), case.task.opening].map(|of| of.map(width));
     let share = |axis: usize| plug[axis] / opening[axis];
     let axis = usize::from(share(1) < share(0));
-    let [both, one] = LEAST_SHARE;
-    if share(axis) > MOST_SHARE {
+    let [both, one] = MIN_SHARE;
+    if share(axis) > MAX_SHARE {
         let [plug, opening] = [plug[axis], opening[axis]].map(|width| width / MM);
         let (key, wide) = (format!("socket.opening_{}_mm", ["x", "y"][axis]), mm(plug * MM));
         let problem = format!("is {} mm wide, but the plug is {wide} mm wide", mm(opening * MM));

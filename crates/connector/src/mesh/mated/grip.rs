@@ -191,8 +191,7 @@ pub fn handle(plug: &[Triangle], size: Size, free: f64) -> Grasp {
     let low = (top - ENCLOSED).max(free + CLEAR);
     // The pads stay above the socket too.
     let shoulder = (low + size.length).max(free + CLEAR + Pad::PUBLISHED.height);
-    let faces = [-size.width / 2.0, size.width / 2.0];
-    let x = [-size.height / 2.0, size.height / 2.0];
+    let [faces, x] = [size.width, size.height].map(|side| [-side / 2.0, side / 2.0]);
     let part = block("handle", [x, faces, [low, shoulder]]);
     Grasp { shoulder, faces, part, area: width(common(x, PAD_X)) * size.length }
 }

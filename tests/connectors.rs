@@ -345,6 +345,8 @@ fn depths_count_from_the_opening_of_a_plug_with_a_nose() {
         assert_eq!(outcome(&folder, "nosed", offset_mm), "inserted", "{offset_mm}");
     }
     begins_inside(&folder, "nosed", 3.0);
+    let [plug, socket] = ["nosed-plug.stl", "nosed-socket.stl"].map(|name| folder.read(name));
+    import(&folder, "swapped", [&socket, &plug]).fails(2, &["are plug and socket swapped?"]);
 }
 
 /// Asserts that a start this much lower, mm, lets the approach end inside of the socket, and that the check names the
@@ -393,18 +395,35 @@ fn a_plug_starts_above_a_deep_lead_in() {
     assert!(page.contains(&inserted) && page.contains(plate), "{inserted}");
 }
 
-/// A key without a slot in the socket stops the plug after 2 mm.
+/// A key without a slot in the socket stops the plug after 2 mm; one with a slot on the other side, of a mirrored file.
 #[test]
-fn a_plug_that_stops_early_is_warned_of() {
-    let plug = vec![
-        block([-3.5, 3.5], [-8.0, 8.0], [0.0, 12.0]),
-        block([3.5, 4.5], [3.0, 5.0], [2.0, 12.0]),
-        block([-5.0, 5.0], [-9.5, 9.5], [12.0, 30.0]),
-    ];
+fn a_plug_that_stops_early_is_refused() {
+    let folder = Studies::new();
+    let key = |low: f64| block([3.5, 4.5], [3.0, 5.0], [low, 12.0]);
+    let plug = |key: Block| {
+        let body = block([-3.5, 3.5], [-8.0, 8.0], [0.0, 12.0]);
+        vec![body, key, block([-5.0, 5.0], [-9.5, 9.5], [12.0, 30.0])]
+    };
+    let floor = block([-7.0, 7.0], [-12.0, 12.0], [-14.0, -12.0]);
     let mut socket = frame([14.0, 24.0], [7.2, 16.2], [-12.0, 0.0]);
-    socket.push(block([-7.0, 7.0], [-12.0, 12.0], [-14.0, -12.0]));
-    let found = imported(&Studies::new(), "keyed", [plug, socket]).json()["found"].to_string();
-    assert!(found.contains("warning only a small part of the plug engages"), "{found}");
+    socket.push(floor);
+    let refused = imported(&folder, "keyed", [plug(key(2.0)), socket.clone()]);
+    let stops = "the plug stops after 2.00 of 12.00 mm, beside its seat";
+    refused.fails(2, &["keyed-plug.stl", stops, "--depth-mm 2.00"]);
+    assert!(!folder.dir("keyed.toml").exists());
+    // The wall at +x begins at 3.6 mm, but for the slot.
+    socket.retain(|[low, _]| low[0] < 3.0);
+    let z = [-12.0, 0.0];
+    socket.push(block([3.6, 7.0], [-8.1, -5.1], z));
+    socket.push(block([3.6, 7.0], [-2.9, 8.1], z));
+    socket.push(block([4.6, 7.0], [-5.1, -2.9], z));
+    for (name, low, problem) in [
+        ("mirrored", 8.0, "the plug stops after 8.00 of 12.00 mm"),
+        ("flush", 0.0, "the plug does not fit into the socket"),
+    ] {
+        let refused = imported(&folder, name, [plug(key(low)), socket.clone()]);
+        refused.fails(2, &[problem, "mirrored, it engages over 12.00 mm"]);
+    }
 }
 
 /// A spring that the plug would push aside is listed, drawn, and out of the way.

@@ -7,7 +7,7 @@ use crate::python::Format;
 use connector::body::{extent, width};
 use connector::draft::Size;
 use connector::mating::plugs;
-use connector::mesh::axes::{Along, Jaws, Unit, value};
+use connector::mesh::axes::{InsertionAxis, JawAxis, Unit, value};
 use connector::mesh::{Body, Files, Triangle, is_step, pick, read, shells};
 use input::units::MM;
 use insertion::task::is_of_name;
@@ -52,14 +52,14 @@ pub struct PairRequest {
     pub unit: Option<Unit>,
     /// Direction of insertion in the socket's file [default: the one in which most walls of the two engage]
     #[arg(long, value_name = "AXIS", value_enum, allow_hyphen_values = true)]
-    pub insert_along: Option<Along>,
+    pub insert_along: Option<InsertionAxis>,
     /// Pose to take, by its number in the list that is printed if several are possible
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub pose: usize,
     /// Axis of the socket's file along which the jaws close [default: the one across which the plug has two parallel
     /// faces for the pads]
     #[arg(long, value_name = "AXIS", value_enum)]
-    pub jaws: Option<Jaws>,
+    pub jaws: Option<JawAxis>,
     /// Task for grip force, friction, fingers, limits and strategy
     #[arg(long, value_name = "T")]
     pub like: Option<String>,

@@ -4,11 +4,13 @@ use super::bodies::{PairRequest, Parts};
 use super::poses::{MatedPose, along_of, depth, jaws_of, mate};
 use crate::context::Context;
 use crate::failure::Failure;
-use connector::body::{extent, width};
+use connector::body::{extent, longest_side, width};
+use connector::draft::Size;
 use connector::mating::Mate;
-use connector::mesh::axes::{Along, Jaws, Unit, value};
+use connector::mesh::axes::{InsertionAxis, JawAxis, Unit, value};
 use connector::mesh::mated::{GAP, HANDLE, Interference, Pair, PairTask, TOLERANCE, task};
 use connector::mesh::{self, Files, SIZES, Surface, Triangle, reduced};
+use connector::plan::Family;
 use connector::write::origin;
 use input::counted;
 use input::units::MM;
@@ -21,10 +23,7 @@ use study::write_file;
 /// Largest number of overlaps that are listed.
 const MAX_SHOWN: usize = 4;
 /// Length of a tip ahead of the part that engages above which it is named, mm: longer than rounded edges.
-const LEAST_NOSE_MM: f64 = 0.5;
-/// Engaged part of the plug's length below which the plug probably rests on something beside its seat. Of twelve public
-/// pairs those that mate engage over at least 0.16 of it, one whose jackscrews meet over 0.11.
-const LEAST_ENGAGED: f64 = 0.15;
+const MIN_NOSE_MM: f64 = 0.5;
 /// Names of the bodies of an [`Interference`] or a deviation.
 const BODIES: [&str; 2] = ["plug", "socket"];
 
@@ -32,14 +31,16 @@ const BODIES: [&str; 2] = ["plug", "socket"];
 pub struct MatedTask {
     /// Task, and the interference in the mated pose that was removed from its parts.
     pub made: PairTask,
+    /// Name of its strategy: `like usb`.
+    pub strategy: String,
     /// Unit of the files.
     pub unit: Unit,
     /// Mated poses that were found, of which the requested one is taken.
     pub poses: Vec<MatedPose>,
     /// Direction of insertion in the file of the socket.
-    pub along: Along,
+    pub along: InsertionAxis,
     /// Axis of the socket's file along which the jaws close.
-    pub jaws: Jaws,
+    pub jaws: JawAxis,
     /// Whether the normals of plug and of socket pointed inward.
     pub inward: [bool; 2],
     /// Findings: the subject and a sentence.
@@ -108,15 +109,28 @@ pub fn mated(
         nose: mate.nose_m,
         play: [0, 1].map(|i| (across[i], mate.play_m[i])),
     };
-    // Height in x, width between the jaws, length.
-    let handle = request.body.map(|size| [size.height, size.width, size.length]);
-    let made = task(&pair, &request.name(), like, handle);
+    let mut made = task(&pair, &request.name(), like, request.body);
+    if made.swapped {
+        let [plug, socket] = files;
+        let problem = format!(
+            "the fingers find no faces to hold on the plug, which encloses the socket, but they do on the socket, {socket}: are \
+             plug and socket swapped? otherwise add a handle with --body"
+        );
+        return Err(Failure::in_file(plug, problem));
+    }
     let seat = (!mate.through && depth > mate.depth_m() + TOLERANCE).then_some(mate.depth_m());
     check_drawing(files, &made, seat, &request.out().with_extension("place.svg"))?;
-    findings.extend(described(&mate, [long, depth], &made, handle));
+    findings.extend(described(&mate, [long, depth], &made, request.body));
     findings.extend(parts.finding);
     let (along, jaws) = (along_of(&-out), jaws_of(&made.jaws));
-    Ok(MatedTask { made, unit, poses, along, jaws, inward: [plug_inward, socket_inward], findings })
+    let like = like.map(|like| Family::Like(Box::new(like.clone())));
+    let like = like.and_then(|family| Some((family.strategy_for(&made.task)?, family.name())));
+    let mut strategy = "upright sweep".to_owned();
+    if let Some(like) = like {
+        (made.task.strategy, strategy) = like;
+    }
+    let inward = [plug_inward, socket_inward];
+    Ok(MatedTask { made, strategy, unit, poses, along, jaws, inward, findings })
 }
 
 /// Checks that the convex parts match the drawing; `seat` is the depth at which the plug stops, m, if it is to go deeper.
@@ -181,12 +195,12 @@ fn described(
     mate: &Mate,
     lengths: [f64; 2],
     made: &PairTask,
-    handle: Option<[f64; 3]>,
+    handle: Option<Size>,
 ) -> Vec<(&'static str, String)> {
     let [depth, nose] = [mate.depth_m(), mate.nose_m].map(|length| length / MM);
     let [long, needed] = lengths.map(|length| length / MM);
     let engaged = match depth <= long {
-        true if nose > LEAST_NOSE_MM => format!(
+        true if nose > MIN_NOSE_MM => format!(
             "{:.2} mm of the plug's {long:.2} mm engage, behind a nose of {nose:.2} mm",
             depth - nose
         ),
@@ -194,17 +208,13 @@ fn described(
         false => format!("the plug of {long:.2} mm goes {depth:.2} mm along a post"),
     };
     let mut findings = vec![("mate", format!("{engaged}; z = 0 is {}", origin(made.top)))];
-    if mate.engaged_m < LEAST_ENGAGED * lengths[0] {
-        let text = "only a small part of the plug engages: see `task show --html`; a key on the wrong side or a mirrored file stops a plug \
-                    early";
-        findings.push(("warning", text.to_owned()));
-    }
     if mate.through {
         findings
             .push(("through", format!("nothing stops the plug: {needed:.2} mm must be reached")));
     }
     if made.handle {
-        let [x, y, z] = handle.unwrap_or(HANDLE).map(|side| side / MM);
+        let Size { width, height, length } = handle.unwrap_or(HANDLE);
+        let [y, x, z] = [width, height, length].map(|side| side / MM);
         let why = match handle {
             Some(_) => "",
             None => "the pads find no two opposite faces below a top face for their roofs: ",
@@ -259,20 +269,33 @@ pub fn unit(
     triangles: [&[Triangle]; 2],
     given: Option<Unit>,
 ) -> Result<(Unit, Option<String>), Failure> {
-    let longest = triangles
-        .map(|of| (0..3).map(|axis| width(extent(of.iter().flatten(), axis))).fold(0.0, f64::max));
-    let fits = |unit: &Unit| {
-        longest.iter().all(|side| (SIZES[0]..=SIZES[1]).contains(&(side * unit.metres())))
-    };
-    let [plug, socket] = longest;
+    let longest = triangles.map(|of| longest_side(of.as_flattened()));
     let units = given.map_or(vec![Unit::Mm, Unit::M, Unit::In], |unit| vec![unit]);
-    let Some(unit) = units.into_iter().find(fits) else {
-        let problem = format!(
-            "read as {}, the plug ({plug:.4} long) or the socket ({socket:.4}) is shorter than 3 mm or longer than 300 mm, \
-             the size of connectors",
-            given.map_or("mm, m or in".to_owned(), value)
-        );
-        return Err(Failure::in_file(files.join(", "), problem));
+    let fits = |side: f64, unit: Unit| (SIZES[0]..=SIZES[1]).contains(&(side * unit.metres()));
+    let common = units.iter().find(|unit| longest.iter().all(|side| fits(*side, **unit)));
+    let Some(unit) = common.copied() else {
+        let [plug, socket] = longest;
+        let own = longest.map(|side| units.iter().copied().find(|unit| fits(side, *unit)));
+        let (at, problem) = match own.map(|unit| unit.map(value)) {
+            [Some(a), Some(b)] => (
+                usize::from(a == "mm"),
+                format!(
+                    "the plug is probably {plug:.4} {a} long, but the socket {socket:.4} {b}; export both in one unit"
+                ),
+            ),
+            [plug, _] => {
+                let at = usize::from(plug.is_some());
+                let read = given.map_or("mm, m or in".to_owned(), value);
+                let (body, long) = (BODIES[at], longest[at]);
+                (
+                    at,
+                    format!(
+                        "read as {read}, the {body} is {long:.4} long; accepted: 3 to 300 mm, the size of connectors"
+                    ),
+                )
+            }
+        };
+        return Err(Failure::in_file(files[at], problem));
     };
     if given.is_some() {
         return Ok((unit, None));

@@ -4,8 +4,8 @@ use super::bodies::PairRequest;
 use crate::context::{Context, not_stopped};
 use crate::failure::{Failure, within};
 use clap::ValueEnum;
-use connector::mating::{Mate, MatingResult, assembled, mates};
-use connector::mesh::axes::{Along, Jaws, value};
+use connector::mating::{Mate, MatingError, MatingResult, assembled, mates, mirrored};
+use connector::mesh::axes::{InsertionAxis, JawAxis, value};
 use connector::mesh::{Files, Triangle};
 use input::units::{DEG, MM};
 use nalgebra::Vector3;
@@ -60,8 +60,13 @@ pub fn mate(
     };
     not_stopped(context.stop)?;
     let nowhere = |why: String| Failure::in_file(files.join(", "), why);
-    let MatingResult { mates: mut all, copies } =
-        found.map_err(|error| nowhere(error.to_string()))?;
+    let MatingResult { mates: mut all, copies } = found.map_err(|error| {
+        let fits = (error == MatingError::NoFit).then(|| mirrored_fit([plug, socket], context));
+        nowhere(match fits.flatten() {
+            Some((_, text)) => format!("the plug does not fit into the socket; {text}"),
+            None => error.to_string(),
+        })
+    })?;
     if copies > 1 {
         findings.push(("symmetry", format!("the first of {copies} equal poses is taken")));
     }
@@ -79,7 +84,44 @@ pub fn mate(
         let list = list.collect::<Vec<_>>().join("; ");
         findings.push(("poses", format!("{} is taken (--pose): {list}", request.pose)));
     }
-    Ok((all.swap_remove(request.pose - 1), poses))
+    let taken = all.swap_remove(request.pose - 1);
+    // An assembly and a depth are taken as they are given.
+    if taken.missed_m > 0.0 && request.assembly.is_none() && request.depth_mm.is_none() {
+        let stops = stopped_early(&taken, [plug, socket], context).map_err(nowhere)?;
+        findings.push(("warning", stops));
+    }
+    not_stopped(context.stop)?;
+    Ok((taken, poses))
+}
+
+/// Returns the depth over which a mirrored plug engages, mm, and a remark on it; `None` if it does not reach its seat.
+fn mirrored_fit([plug, socket]: [&[Triangle]; 2], context: &Context<'_>) -> Option<(f64, String)> {
+    let found = mates(&mirrored(plug), socket, context.stop).ok()?;
+    let mate = found.mates.first().filter(|mate| mate.missed_m == 0.0)?;
+    let mm = mate.engaged_m / MM;
+    Some((mm, format!("mirrored, it engages over {mm:.2} mm: mirror one of the two")))
+}
+
+/// Returns a warning of a plug that stops before its seat.
+///
+/// # Errors
+/// If a mirrored plug engages deeper, or if the plug stops before half of its depth.
+fn stopped_early(
+    mate: &Mate,
+    parts: [&[Triangle]; 2],
+    context: &Context<'_>,
+) -> Result<String, String> {
+    let [engaged, missed] = [mate.engaged_m, mate.missed_m].map(|depth| depth / MM);
+    let possible = engaged + missed;
+    let stops = format!("the plug stops after {engaged:.2} of {possible:.2} mm, beside its seat");
+    match mirrored_fit(parts, context) {
+        Some((mm, text)) if mm > engaged => Err(format!("{stops}; {text}")),
+        _ if missed > engaged => Err(format!(
+            "{stops}: is a key on the wrong side, or a screw in the way? correct the file, select bodies with --plug-body, or \
+             confirm the depth with --depth-mm {engaged:.2}"
+        )),
+        _ => Ok(stops),
+    }
 }
 
 /// Returns the depth to be reached, m: that of the request, or that of the mated pose. `long` is the
@@ -98,11 +140,11 @@ pub fn depth(request: &PairRequest, mate: &Mate, long: f64) -> Result<f64, Failu
     Err(Failure::usage(format!("--depth-mm {depth_mm}: {problem}")))
 }
 
-pub(super) fn jaws_of(way: &Vector3<f64>) -> Jaws {
-    [Jaws::X, Jaws::Y, Jaws::Z][way.iamax()]
+pub(super) fn jaws_of(way: &Vector3<f64>) -> JawAxis {
+    [JawAxis::X, JawAxis::Y, JawAxis::Z][way.iamax()]
 }
 
-pub(super) fn along_of(way: &Vector3<f64>) -> Along {
+pub(super) fn along_of(way: &Vector3<f64>) -> InsertionAxis {
     let axis = way.iamax();
-    Along::value_variants()[2 * axis + usize::from(way[axis] < 0.0)]
+    InsertionAxis::value_variants()[2 * axis + usize::from(way[axis] < 0.0)]
 }

@@ -69,12 +69,14 @@ pub fn chosen(tuned: Option<&Tuned>) -> Value {
     tuned.map_or(Value::Null, |tuned| step_json(tuned.best()))
 }
 
-/// Returns a line with the label `name` about the chosen strategy.
+/// Returns lines with the label `name` about the chosen strategy and about the first one, if it replaces that.
 pub fn brief(name: &str, tuned: &Tuned) -> String {
-    let step = tuned.best();
-    let range = outcome(step);
-    let text = format!("{}: {range} with a soft, a medium and a stiff finger", step.change);
-    layout::lines([(name.to_owned(), text)])
+    let (step, first) = (tuned.best(), &tuned.steps[0]);
+    let text =
+        format!("{}: {} with a soft, a medium and a stiff finger", step.change, outcome(step));
+    let instead = format!("instead of {}: {}", first.change, outcome(first));
+    let instead = (tuned.best > 0).then(|| (String::new(), instead));
+    layout::lines([(name.to_owned(), text)].into_iter().chain(instead))
 }
 
 /// Returns the tried strategies as text; of the numerical search only the number of variations.
@@ -105,7 +107,10 @@ fn distinct<'a>(changes: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
 pub fn outcome(step: &Step) -> String {
     match step.tried.windows.is_empty() {
         true => "inserts from no start".to_owned(),
-        false => ranges(&step.tried.windows) + &turned_text(step),
+        false => {
+            let start = if step.stage == Stage::AsItIs { "given" } else { "taught" };
+            format!("{} about the {start} start{}", ranges(&step.tried.windows), turned_text(step))
+        }
     }
 }
 

@@ -1,5 +1,7 @@
 //! Task from a few dimensions: plug, clearance and the body that the fingers hold.
 
+use super::body::{clipped, extent};
+use super::mesh::solid_of;
 use super::pins::Pins;
 use super::plan;
 use input::shown;
@@ -25,8 +27,8 @@ const BELOW_TIP: f64 = 0.5 * MM;
 const BELOW_PADS: f64 = 1.0 * MM;
 /// Largest overlap of the key of a round plug with the cylinder, m.
 const KEY_ROOT: f64 = 0.45 * MM;
-/// Area below which a piece of a slotted wall is dropped, m2.
-const SLIVER: f64 = 1e-10;
+/// Volume below which a piece of a slotted wall is dropped, m3.
+const SLIVER: f64 = 1e-12;
 /// Thickness of the floor, m.
 const FLOOR: f64 = 2.0 * MM;
 /// Insertion depth of a plug without a body, as a share of its length.
@@ -278,44 +280,25 @@ fn housing(size: &Dimensions, floor: f64) -> ([[f64; 2]; 2], Vec<Part>) {
 /// side of y = 0, m.
 fn slotted(walls: &[Part], [reach, half]: [f64; 2]) -> Vec<Part> {
     let cut = |wall: &Part| -> Vec<Part> {
-        let Solid::Prism { axis, outline, span } = &wall.solid else { return vec![wall.clone()] };
-        if outline.iter().all(|[x, _]| *x <= 0.0) {
+        let (corners, all) = (wall.solid.corners(), f64::INFINITY);
+        if extent(&corners, 0)[1] <= 0.0 {
             return vec![wall.clone()];
         }
-        let above = clip(outline, [0.0, -1.0], -half);
-        let below = clip(outline, [0.0, 1.0], -half);
-        let between = clip(&clip(outline, [0.0, 1.0], half), [0.0, -1.0], half);
-        let beyond = clip(&between, [-1.0, 0.0], -reach);
-        let pieces = [above, below, beyond].into_iter().filter(|piece| area(piece) > SLIVER);
-        let piece = |(number, outline): (usize, Vec<[f64; 2]>)| {
-            let solid = Solid::Prism { axis: *axis, outline, span: *span };
-            let name = &wall.name;
-            if number == 1 { part(name, solid) } else { part(&format!("{name} {number}"), solid) }
+        let between = clipped(&corners, 1, [-half, half]);
+        let pieces = [
+            clipped(&corners, 1, [half, all]),
+            clipped(&corners, 1, [-all, -half]),
+            clipped(&between, 0, [reach, all]),
+        ];
+        let solids = pieces.iter().filter_map(|piece| solid_of(piece));
+        let solids = solids.filter(|solid| geometry::volume(solid) > SLIVER);
+        let name = |number| match number {
+            1 => wall.name.clone(),
+            _ => format!("{} {number}", wall.name),
         };
-        (1..).zip(pieces).map(piece).collect()
+        (1..).zip(solids).map(|(number, solid)| part(&name(number), solid)).collect()
     };
     walls.iter().flat_map(cut).collect()
-}
-
-/// Clips a convex outline to the half plane `normal . p <= distance` (Sutherland and Hodgman).
-fn clip(outline: &[[f64; 2]], normal: [f64; 2], distance: f64) -> Vec<[f64; 2]> {
-    let over = |p: [f64; 2]| normal[0] * p[0] + normal[1] * p[1] - distance;
-    let next = outline.iter().cycle().skip(1);
-    let edges = outline.iter().zip(next).map(|(&from, &to)| (from, to));
-    let kept = edges.flat_map(|(from, to)| {
-        let [a, b] = [over(from), over(to)];
-        let crossing =
-            (a * b < 0.0).then(|| [0, 1].map(|i| from[i] + (to[i] - from[i]) * a / (a - b)));
-        (a <= 0.0).then_some(from).into_iter().chain(crossing)
-    });
-    kept.collect()
-}
-
-/// Returns the area of a convex outline, m2.
-fn area(outline: &[[f64; 2]]) -> f64 {
-    let next = outline.iter().cycle().skip(1);
-    let twice: f64 = outline.iter().zip(next).map(|(a, b)| a[0] * b[1] - b[0] * a[1]).sum();
-    twice.abs() / 2.0
 }
 
 /// Largest error of the diameter of a hole, as a share of the clearance; the limit of [`FLATS`] has precedence.

@@ -11,9 +11,9 @@ use insertion::task::{Part, Task};
 use nalgebra::{Point2, Point3, Vector2};
 
 /// Size of a panel with the gap to the next one, pixels.
-const PANEL: f64 = 420.0;
+pub(crate) const PANEL: f64 = 420.0;
 /// Size of a panel without the gap, pixels.
-const INSIDE: f64 = PANEL - 10.0;
+pub(crate) const INSIDE: f64 = PANEL - 10.0;
 /// Width and height of the drawing of a task, pixels.
 const SIZE: [f64; 2] = [VIEWS.len() as f64 * PANEL, PANEL + 130.0];
 const SOCKET: Style = Style::fill("#b8c4d6").opacity(0.5).outlined("#56657d", 1.0);

@@ -49,7 +49,7 @@ const MISSING: (f64, f64) = (0.2 * MM, 0.02);
 /// Share of the full depth at which the play is measured.
 const WITHIN: f64 = 0.9;
 /// Smallest depth at which a plug counts as entered, m.
-const LEAST_DEPTH: f64 = 1.0 * MM;
+const MIN_DEPTH: f64 = 1.0 * MM;
 /// Allowance for the lateral place of a mated plug beyond its play, m.
 const ASIDE: f64 = 0.1 * MM;
 /// Distance below the top at which the opening of a mated plug is measured, m.
@@ -65,7 +65,7 @@ pub fn complete(task: &Task) -> Result<Task, String> {
     let no_floor =
         "the plug falls through its socket: give the socket a floor, or the plug a shoulder";
     let [by, on] = seat.stopped_by.ok_or(no_floor)?;
-    if seat.depth < LEAST_DEPTH {
+    if seat.depth < MIN_DEPTH {
         return Err(format!(
             "the plug does not go into the socket: upright it stops {:.2} mm below the top, \
              where `{}` meets `{}`; make the opening wider or the plug smaller",
@@ -145,7 +145,7 @@ pub fn has_core(task: &Task) -> bool {
             let [low, high] = extent(&corners, axis);
             low < middle[axis][1] && middle[axis][0] < high
         };
-        extent(&corners, 2)[1] > mated.tip[2] + LEAST_DEPTH && inside(0) && inside(1)
+        extent(&corners, 2)[1] > mated.tip[2] + MIN_DEPTH && inside(0) && inside(1)
     })
 }
 
@@ -180,7 +180,7 @@ impl Family {
     pub fn strategy_for(&self, task: &Task) -> Option<Strategy> {
         let bodies = TaskBodies::new(task);
         let seat = bodies.deepest().depth;
-        (seat >= LEAST_DEPTH).then(|| self.strategy(task, &bodies.plug, seat))
+        (seat >= MIN_DEPTH).then(|| self.strategy(task, &bodies.plug, seat))
     }
 
     /// Returns the strategy for a plug that is stopped at this depth, m.
@@ -207,7 +207,7 @@ impl Family {
 
 /// Returns the extent of the tip in x and in y, m.
 fn tip(plug: &ConvexBody) -> [[f64; 2]; 2] {
-    section(plug, plug.extent(2)[0] + LEAST_DEPTH)
+    section(plug, plug.extent(2)[0] + MIN_DEPTH)
 }
 
 /// Maps a coordinate from one interval to another: linearly inside, at the same distance beyond an end outside.

@@ -18,7 +18,7 @@ const ASIDE: f64 = 0.2 * MM;
 /// Overlap of bodies that only touch, m.
 const TOUCHING: f64 = 1e-3 * MM;
 /// Largest lateral play that is measured, m.
-const MOST_PLAY: f64 = 10.0 * MM;
+const MAX_PLAY: f64 = 10.0 * MM;
 /// Intervals of the grid of places along x and along y.
 const GRID: i32 = 8;
 /// Refinements of that grid about its best place.
@@ -105,7 +105,7 @@ impl<'a> TaskBodies<'a> {
     fn free_distances(&self, depth: f64, at: [f64; 2], axis: usize) -> [f64; 2] {
         let least = self.overlap(depth, at).0.max(TOUCHING);
         [-1.0, 1.0].map(|sign| {
-            let (mut free, mut blocked) = (0.0, MOST_PLAY);
+            let (mut free, mut blocked) = (0.0, MAX_PLAY);
             while blocked - free > TOUCHING {
                 let middle = (free + blocked) / 2.0;
                 let mut place = at;

@@ -65,8 +65,9 @@ impl command::Request for Request {
         let mut mated = self.mated_task(context)?;
         not_stopped(stop)?;
         let _busy = context.busy("trying strategies");
-        let (task, tuned) = tune_new(mated.made.task, &self.robot, stop)?;
+        let (task, mut tuned) = tune_new(mated.made.task, &self.robot, stop)?;
         mated.made.task = task;
+        tuned.iter_mut().for_each(|tuned| tuned.steps[0].change.clone_from(&mated.strategy));
         let written = self.write(out, &mated)?;
         let checked = TaskCheck::of(written.source, &self.robot, stop)?;
         let tuned = tuned.as_ref();
@@ -190,9 +191,13 @@ fn text(
     let [plug_parts, socket_parts] = [task.plug.parts.len(), task.socket.len()];
     let [clearance_x_mm, clearance_y_mm] = mated.made.play.map(|play| play / MM);
     let [wide, high, long] = body_mm(&mated.made);
+    let [along, jaws] = [value(mated.along), value(mated.jaws)];
+    let along =
+        along.strip_prefix('-').map_or(format!("along {along}"), |axis| format!("against {axis}"));
     let mut text = format!(
         "written       {out}\nplug          {plug}, {plug_parts} convex parts: held by the fingers\n\
          socket        {socket}, {socket_parts} convex parts: fixed\n\
+         axes          inserted {along}, the jaws close along {jaws}, both of the socket's file\n\
          clearance     {clearance_y_mm:.3} mm in y, {clearance_x_mm:.3} mm in x\n\
          body          {wide:.1} x {high:.1} mm between the pads (y, x), up to z = {long:.1} mm when seated\n"
     );

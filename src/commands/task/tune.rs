@@ -10,7 +10,7 @@ use crate::setup::task::TaskFile;
 use crate::setup::tune::{outcome, ranges, step_json, tilt_text, tried, turned_text};
 use crate::setup::words::parse_number;
 use connector::check::problems;
-use connector::tune::{Candidate, Effort, MOST_WINDOWS, Stage, Step, Tuned, Tuner, tune};
+use connector::tune::{Candidate, Effort, MAX_WINDOWS, Stage, Step, Tuned, Tuner, tune};
 use connector::{picture, rewrite};
 use input::Place;
 use input::shipped::Source;
@@ -85,7 +85,7 @@ impl command::Request for Request {
     fn run(&self, context: &Context<'_>) -> Result<Output, Failure> {
         let stop = context.stop;
         context.cancel_on_interrupt()?;
-        context.begin(MOST_WINDOWS as f64);
+        context.begin(MAX_WINDOWS as f64);
         let file = TaskFile::parse(TaskSource::Named(self.file.clone()).read()?)?;
         let target = self.target()?;
         if let Some(problem) = problems(&file.task).first() {
@@ -290,7 +290,11 @@ fn text(done: &TunedTask<'_>) -> String {
         Some(after) => {
             let best = tuned.best();
             let turned = turned_text(best);
-            let text = format!("{}: {}{turned}", best.change, ranges(&after.windows));
+            let text = format!(
+                "{}: {} about the written start{turned}",
+                best.change,
+                ranges(&after.windows)
+            );
             all.push(line("chosen", text));
             all.extend(tilt_text(tuned).map(|why| line("", why)));
             let wider = |step: &Step| step.tried.score > best.tried.score;

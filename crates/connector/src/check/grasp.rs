@@ -5,7 +5,7 @@ use crate::hold::{PadContacts, SEAM, default_grasp, pad_contacts};
 use input::units::MM;
 
 /// Smallest height over which a pad must touch its face, m.
-const LEAST_COVER: f64 = 1.0 * MM;
+const MIN_COVER: f64 = 1.0 * MM;
 
 /// Checks the grasp: pads, roofs and TCP.
 pub(super) fn problems(case: &TaskBodies) -> Vec<Problem> {
@@ -75,7 +75,7 @@ fn cover(case: &TaskBodies, pads: &PadContacts) -> Option<Problem> {
     let cover = pads.cover[0].min(pads.cover[1]);
     let [low, high] = pads.pad_z.map(mm);
     let (limit, met) = (mm(grip.slip_limit), mm(cover));
-    if cover < LEAST_COVER {
+    if cover < MIN_COVER {
         return Some(Problem::new(
             "grip.shoulder_z_mm",
             format!("the pads, {low} to {high} mm, touch only {met} mm of the grip block"),
@@ -112,7 +112,7 @@ fn roof(case: &TaskBodies, pads: &PadContacts) -> Option<Problem> {
 
 /// Returns a grasp that would hold the plug, as advice.
 fn remedy(case: &TaskBodies) -> String {
-    match default_grasp(&case.plug, LEAST_COVER) {
+    match default_grasp(&case.plug, MIN_COVER) {
         Some((shoulder, faces)) => {
             let ([shoulder, tcp], faces) =
                 ([shoulder, shoulder - 3.0 * MM].map(mm), interval(faces));

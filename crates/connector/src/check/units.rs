@@ -1,9 +1,9 @@
 //! Checks of the units of a task file: lengths in mm, angles in degrees, forces in N.
 
-use super::{Problem, TaskBodies, part_key, widest_key};
+use super::{Problem, TaskBodies, mm, part_key, widest_key};
 use crate::body::{longest_side, width};
 use crate::seat::section;
-use input::units::{DEG, MM, mm};
+use input::units::{DEG, MM};
 use input::wrong_unit::{self, WrongUnit, remedy};
 use insertion::task::Ending;
 use nalgebra::Vector3;
@@ -13,11 +13,11 @@ pub const FACES_MM: [f64; 2] = [1.0, 100.0];
 
 /// Smallest plausible widths of a plug as shares of its opening: in both directions, and in one. Shipped tasks have at
 /// least 0.6, a flat pin in a round hole 0.1.
-const LEAST_SHARE: [f64; 2] = [1.0 / 8.0, 1.0 / 20.0];
+const MIN_SHARE: [f64; 2] = [1.0 / 8.0, 1.0 / 20.0];
 /// Largest plausible width of a plug as a share of its opening, in both directions.
-const MOST_SHARE: f64 = 8.0;
+const MAX_SHARE: f64 = 8.0;
 /// Smallest plausible tilt except 0, degrees. Smaller numbers are angles up to 15 degrees, in radians.
-const LEAST_TILT_DEG: f64 = 0.27;
+const MIN_TILT_DEG: f64 = 0.27;
 /// Grip force, and its plausible range, N.
 const FORCE: &str = "grip.force_n";
 const FORCE_N: [f64; 2] = [0.01, 200.0];
@@ -62,9 +62,9 @@ pub(super) fn problems(case: &TaskBodies) -> Vec<Problem> {
     // `task tune` varies a tilt in steps of 0.1 degrees.
     for (key, tilt, step) in [
         ("strategy.tilt_deg", task.strategy.tilt, 0.1),
-        ("success.tilt_deg", task.success.tilt, LEAST_TILT_DEG),
+        ("success.tilt_deg", task.success.tilt, MIN_TILT_DEG),
     ] {
-        found.extend(problem(key, wrong_unit::angle(tilt / DEG, LEAST_TILT_DEG, step)));
+        found.extend(problem(key, wrong_unit::angle(tilt / DEG, MIN_TILT_DEG, step)));
     }
     found.extend(problem(FORCE, wrong_unit::number(FORCE, grip.force, FORCE_N)));
     if found.is_empty() {
@@ -88,8 +88,8 @@ fn other_unit(case: &TaskBodies) -> Option<Problem> {
     let [plug, opening] = [section(&case.plug, depth), case.task.opening].map(|of| of.map(width));
     let share = |axis: usize| plug[axis] / opening[axis];
     let axis = usize::from(share(1) < share(0));
-    let [both, one] = LEAST_SHARE;
-    if share(axis) > MOST_SHARE {
+    let [both, one] = MIN_SHARE;
+    if share(axis) > MAX_SHARE {
         let [plug, opening] = [plug[axis], opening[axis]].map(|width| width / MM);
         let (key, wide) = (format!("socket.opening_{}_mm", ["x", "y"][axis]), mm(plug * MM));
         let problem = format!("is {} mm wide, but the plug is {wide} mm wide", mm(opening * MM));

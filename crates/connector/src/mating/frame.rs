@@ -7,7 +7,7 @@ use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 /// Cosine of the largest angle between parallel normals: half a degree.
 const PARALLEL: f64 = 0.999_96;
 /// Largest number of directions of normals that are tried as axes.
-const MOST_DIRECTIONS: usize = 12;
+const MAX_DIRECTIONS: usize = 12;
 /// Share of the best axes' area at and above which the axes of the file are kept: a round part has many equal axes.
 const KEPT: f64 = 0.6;
 
@@ -75,7 +75,7 @@ fn directions(triangles: &[Triangle]) -> Vec<(Vector3<f64>, f64)> {
         let same = |(known, _): &(Vector3<f64>, f64)| known.dot(&normal).abs() > PARALLEL;
         match found.iter().position(same) {
             Some(at) => found[at].1 += area,
-            None if found.len() < 100 * MOST_DIRECTIONS => found.push((normal, area)),
+            None if found.len() < 100 * MAX_DIRECTIONS => found.push((normal, area)),
             None => {}
         }
     }
@@ -91,7 +91,7 @@ fn axes(directions: &[(Vector3<f64>, f64)]) -> Option<Rotation3<f64>> {
         directions.iter().filter(|(normal, _)| square(normal)).map(|(_, area)| area).sum()
     };
     directions.first()?;
-    let few = &directions[..directions.len().min(MOST_DIRECTIONS)];
+    let few = &directions[..directions.len().min(MAX_DIRECTIONS)];
     let mut best = (Rotation3::identity(), area(&Rotation3::identity()) / KEPT);
     for (z, _) in few {
         for (other, _) in few {

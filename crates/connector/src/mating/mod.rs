@@ -23,7 +23,7 @@ use crate::mesh::Triangle;
 pub use assembled::assembled;
 use frame::{Part, Parts};
 use input::units::MM;
-use nalgebra::{Isometry3, Unit, Vector3};
+use nalgebra::{Isometry3, Point3, Unit, Vector3};
 pub use split::plugs;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -51,6 +51,8 @@ pub struct Mate {
     pub play_m: [f64; 2],
     /// Whether the hole goes through; the tip of the plug is then placed at the far side of the socket.
     pub through: bool,
+    /// Further depth at which more of the walls would engage, m, if something beside the seat stops the plug; else 0.
+    pub missed_m: f64,
 }
 
 /// Result of the search for a mate.
@@ -86,7 +88,7 @@ pub enum MatingError {
     #[error(
         "the plug does not fit into the socket along any of their axes: no pose is at least {} mm deep \
          with walls on four sides at most {} mm away; if the parts do mate, give their assembly in the mated pose",
-        search::LEAST / MM,
+        search::MIN_DEPTH / MM,
         MAX_PLAYS[2] / MM
     )]
     NoFit,
@@ -96,11 +98,17 @@ pub enum MatingError {
     )]
     Blocked,
     /// Number of bodies that is out of range for an assembly.
-    #[error("has {0} bodies; an assembly must have 2 to {most}", most = split::MOST_BODIES)]
+    #[error("has {0} bodies; an assembly must have 2 to {most}", most = split::MAX_BODIES)]
     Bodies(usize),
     /// Cancellation by the caller.
     #[error("stopped")]
     Stopped,
+}
+
+/// Returns the mirror image of triangles, with their normals outward.
+pub fn mirrored(triangles: &[Triangle]) -> Vec<Triangle> {
+    let mirror = |p: Point3<f64>| Point3::new(-p.x, p.y, p.z);
+    triangles.iter().map(|[a, b, c]| [a, c, b].map(|p| mirror(*p))).collect()
 }
 
 /// Returns an error if the search was cancelled.

@@ -13,7 +13,7 @@ use nalgebra::{Isometry3, Translation3, Unit, UnitQuaternion, Vector3};
 /// Side of a cell along the axis on which play is measured, m.
 const CELL: f64 = 0.005 * MM;
 /// Largest number of cells of a map.
-const MOST_CELLS: f64 = 1.5e6;
+const MAX_CELLS: f64 = 1.5e6;
 /// Height above the seat at which play is measured, m, so that the surface on which the plug rests does not limit it.
 const LIFT: f64 = 0.1 * MM;
 /// Width of the margin around interfering cells that is left out with them, m.
@@ -42,7 +42,7 @@ impl PlayMeasurement<'_> {
     /// Returns the maps of socket and plug, with cells of [`CELL`] along an axis and larger ones across it.
     fn maps(&self, axis: usize) -> [HeightMap; 2] {
         let area: f64 = self.window.iter().map(|[low, high]| high - low).product();
-        let mut step = [(area / MOST_CELLS / CELL).max(2.0 * CELL); 2];
+        let mut step = [(area / MAX_CELLS / CELL).max(2.0 * CELL); 2];
         step[axis] = CELL;
         let by = Vector3::new(self.shift[0], self.shift[1], 0.0);
         let plug: Vec<Triangle> = self.plug.iter().map(|corners| corners.map(|p| p + by)).collect();
@@ -186,5 +186,6 @@ pub fn mate(parts: &Parts, scene: &Scene, pose: &Pose, max_play: f64) -> Mate {
         nose_m: pose.nose,
         play_m,
         through: pose.through,
+        missed_m: if pose.through { 0.0 } else { fine.missed(pose) },
     }
 }

@@ -4,6 +4,7 @@ use super::cells::CellSet;
 use super::engagement::{PlugWalls, SIDES, SocketWalls, overlap, score};
 use super::map::{Envelope, HeightMap, NOWHERE, Window, bounds, rest, touching};
 use super::search::{CoarseSeat, FINE, Scene};
+use super::select::SIMILAR;
 use super::{MatingError, check_cancelled};
 use input::units::MM;
 use rayon::prelude::*;
@@ -19,15 +20,18 @@ pub const TOLERANCE: f64 = 0.02 * MM;
 /// Largest difference between resting heights that count as equal, m.
 const LEVEL: f32 = 0.02e-3;
 /// Smallest cell of a map, m.
-const LEAST_CELL: f64 = 0.01 * MM;
+const MIN_CELL: f64 = 0.01 * MM;
 /// Largest number of cells of a map.
-const MOST_CELLS: f64 = 1e6;
+const MAX_CELLS: f64 = 1e6;
 /// Largest number of moves of the search window.
-const MOST_MOVES: usize = 4;
+const MAX_MOVES: usize = 4;
 /// Largest number of refined seats.
-const MOST: usize = 24;
+const MAX_POSES: usize = 24;
 /// Smallest facing area of a refined seat, as a share of the largest one.
 const SHARE: f64 = 0.4;
+
+/// Step of the depth at which more walls could face each other, m.
+const DROP: f64 = 0.1 * MM;
 
 /// Refined pose of the plug.
 #[derive(Debug, Clone, Default)]
@@ -131,7 +135,7 @@ pub fn refined(
     let mut kept: Vec<Pose> = Vec::new();
     for pose in poses {
         let good = kept.first().is_none_or(|best| pose.walls > SHARE * best.walls);
-        if good && kept.len() < MOST && !kept.iter().any(|other| other.near(&pose, max_play)) {
+        if good && kept.len() < MAX_POSES && !kept.iter().any(|other| other.near(&pose, max_play)) {
             kept.push(pose);
         }
     }
@@ -209,7 +213,7 @@ impl Fine {
         };
         let window = [common(px, sx, pose.shift[0]), common(py, sy, pose.shift[1])];
         let area: f64 = window.iter().map(|[low, high]| (high - low).max(0.0)).product();
-        let step = (area / MOST_CELLS).sqrt().max(LEAST_CELL);
+        let step = (area / MAX_CELLS).sqrt().max(MIN_CELL);
         let back = [0, 1].map(|a| window[a].map(|v| v - pose.shift[a]));
         let upper = HeightMap::new(socket, Envelope::Upper, [step; 2], Some(window));
         let lower = HeightMap::new(plug, Envelope::Lower, [step; 2], Some(back));
@@ -277,7 +281,7 @@ impl Fine {
         mut about: [i32; 2],
     ) -> Option<([i32; 2], f32)> {
         let mut found = None;
-        for _ in 0..MOST_MOVES {
+        for _ in 0..MAX_MOVES {
             let (level, z) = lowest(maps, about, self.radius);
             let (seat, _) = seated(z, self.heights[0], self.heights[1]);
             let engaged = |shift: &[i32; 2]| score(&self.sides.facing(faces, *shift, seat as f32));
@@ -298,6 +302,17 @@ impl Fine {
     /// Returns the cells that both parts fill at a pose.
     pub fn overlap(&self, pose: &Pose) -> Vec<[i32; 2]> {
         overlap([&self.upper, &self.tight], self.cells(pose), pose.z as f32 + LEVEL)
+    }
+
+    /// Returns the further depth at which most walls would face one another if nothing stopped the plug, m: 0 if those at
+    /// its seat are [`SIMILAR`], as they are unless a key or a screw is in the way.
+    pub fn missed(&self, pose: &Pose) -> f64 {
+        let (faces, at) = (self.faces(), self.cells(pose));
+        let walls = |by: f64| score(&self.sides.facing(&faces, at, (pose.z - by) as f32 + LEVEL));
+        let most = pose.z + self.heights[1][1] - self.heights[0][0];
+        let lower = (1..).map(|i| f64::from(i) * DROP).take_while(|by| *by < most);
+        let best = lower.map(|by| (walls(by), by)).max_by(|a, b| a.0.total_cmp(&b.0));
+        best.filter(|(area, _)| SIMILAR * area > walls(0.0)).map_or(0.0, |(_, by)| by)
     }
 
     /// Returns the width of the region that both parts fill at a pose, m.

@@ -11,11 +11,11 @@ use rayon::prelude::*;
 use std::sync::atomic::AtomicBool;
 
 /// Smallest depth of a seat, m.
-pub const LEAST: f64 = 0.4 * MM;
+pub const MIN_DEPTH: f64 = 0.4 * MM;
 /// Interference that the second pass tolerates, m: contact springs are drawn unloaded.
 const INTERFERENCE: f64 = 0.2 * MM;
 /// Smallest cell of the coarse maps, m.
-const LEAST_CELL: f64 = 0.1 * MM;
+const MIN_CELL: f64 = 0.1 * MM;
 /// Budgets of the search in comparisons of two cells: a fast one, and one that resolves thin walls.
 pub const EFFORTS: [f64; 2] = [10e9, 160e9];
 /// Number of fine cells along the side of a coarse cell.
@@ -23,7 +23,7 @@ pub const FINE: usize = 4;
 /// Number of pairs of rotations between two checks of the stop flag.
 const AT_ONCE: usize = 24;
 /// Largest number of seats per pair of rotations: a header of two rows of 50 pins has 297, shifted by whole pitches.
-const MOST_SEATS: usize = 300;
+const MAX_SEATS: usize = 300;
 
 /// Seat found on the coarse maps.
 pub struct CoarseSeat {
@@ -76,7 +76,7 @@ fn cell(sockets: &[Vec<Triangle>], plugs: &[Vec<Triangle>], effort: f64) -> f64 
     };
     let work: f64 = sockets.iter().flat_map(|s| plugs.iter().map(move |p| pair(s, p))).sum();
     // Two bounds in each of two passes, without and with interference.
-    (4.0 * work / effort).sqrt().sqrt().max(LEAST_CELL)
+    (4.0 * work / effort).sqrt().sqrt().max(MIN_CELL)
 }
 
 /// Coarse maps of a part: the outermost height of each cell, and the innermost height of blocks of two by two cells.
@@ -125,7 +125,7 @@ fn rests([s, s_inner]: &Coarse, [p, p_inner]: &Coarse, passed: f32) -> HeightMap
         map.heights.iter().copied().fold(map.envelope.empty(), take)
     };
     let highest = extremes(s, f32::max) - extremes(p, f32::min);
-    let range = [passed, highest - LEAST as f32];
+    let range = [passed, highest - MIN_DEPTH as f32];
     let first = [0, 1].map(|a| s.first[a] - p.first[a] - p.count[a] as i32);
     let count = [0, 1].map(|a| s.count[a] + p.count[a] + 1);
     let mut map =
@@ -153,14 +153,14 @@ fn enclosed(rests: &HeightMap, [out, turn]: [usize; 2], max_play: f64) -> Vec<Co
         SIDES.map(side).into_iter().fold(NOWHERE, f32::min)
     };
     let lifts = rests.cells().map(|place| (lift(place), place));
-    let mut found: Vec<_> = lifts.filter(|(lift, _)| f64::from(*lift) >= LEAST).collect();
+    let mut found: Vec<_> = lifts.filter(|(lift, _)| f64::from(*lift) >= MIN_DEPTH).collect();
     found.sort_by(|a, b| b.0.total_cmp(&a.0));
     let mut seats: Vec<(f32, [i32; 2])> = Vec::new();
     for (depth, place) in found {
         let near = |other: &[i32; 2]| {
             (other[0] - place[0]).abs() <= radius / 2 && (other[1] - place[1]).abs() <= radius / 2
         };
-        if seats.len() < MOST_SEATS && !seats.iter().any(|(_, other)| near(other)) {
+        if seats.len() < MAX_SEATS && !seats.iter().any(|(_, other)| near(other)) {
             seats.push((depth, place));
         }
     }

@@ -3,15 +3,15 @@
 use super::frame::Parts;
 use super::map::{NOWHERE, bounds};
 use super::refine::Pose;
-use super::search::{LEAST, Scene};
+use super::search::{MIN_DEPTH, Scene};
 use super::{MatingResult, precise};
 use input::units::MM;
 
 /// Smallest share of the best engagement that counts as similar, given the resolution of the maps.
-const SIMILAR: f64 = 0.97;
+pub const SIMILAR: f64 = 0.97;
 /// Largest difference in depth between equal mates, m.
-const SAME: f64 = 0.05 * MM;
-/// Smallest facing area, as a share of [`LEAST`] times the mean side of the plug in x and y.
+const DEPTH_TOLERANCE: f64 = 0.05 * MM;
+/// Smallest facing area, as a share of [`MIN_DEPTH`] times the mean side of the plug in x and y.
 const GUIDED: f64 = 0.25;
 
 /// Width of the rim about the plug within which the height of the socket is measured, m.
@@ -32,7 +32,7 @@ pub fn select(
         // The plug must protrude, or it could not be grasped; a ring lowered over a post protrudes from its
         // surroundings.
         let held = pose.depth < z[1] - z[0] || z[1] + pose.z > beside(scene, pose, [x, y]);
-        pose.depth >= LEAST && held && pose.walls >= LEAST * GUIDED * size
+        pose.depth >= MIN_DEPTH && held && pose.walls >= MIN_DEPTH * GUIDED * size
     };
     let poses: Vec<_> = poses.iter().filter(guided).collect();
     let best = poses.first()?;
@@ -42,7 +42,7 @@ pub fn select(
     };
     let similar = poses.iter().filter(|pose| pose.value() >= SIMILAR * best.value());
     let (equal, others): (Vec<&&Pose>, Vec<&&Pose>) = similar.partition(|pose| {
-        (pose.depth - best.depth).abs() < SAME && pose.walls > SIMILAR * best.walls
+        (pose.depth - best.depth).abs() < DEPTH_TOLERANCE && pose.walls > SIMILAR * best.walls
     });
     let mate = |pose: &Pose| precise::mate(parts, scene, pose, max_play);
     let copies =

@@ -5,7 +5,7 @@ use super::engagement::{SIDES, WallAreas, score};
 use super::frame::{Part, rotations_to_z, turned};
 use super::map::{Envelope, HeightMap, NOWHERE, bounds, maps, rest};
 use super::refine::{REACH, TOLERANCE};
-use super::search::LEAST;
+use super::search::MIN_DEPTH;
 use super::{MAX_PLAYS, MatingError};
 use crate::body::{span, width};
 use crate::mesh::Triangle;
@@ -19,9 +19,9 @@ use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Smallest cell of the maps, m.
-const LEAST_CELL: f64 = 0.05 * MM;
+const MIN_CELL: f64 = 0.05 * MM;
 /// Largest number of cells along the side of a map.
-const MOST_CELLS: f64 = 400.0;
+const MAX_CELLS: f64 = 400.0;
 /// Interferences that are tolerated in a withdrawal, m: contact springs are drawn unloaded.
 const INTERFERENCES: [f64; 3] = [0.0, 0.2 * MM, 0.6 * MM];
 /// Largest distance between faces that touch, m.
@@ -33,9 +33,9 @@ const SIMILAR: f64 = 0.8;
 /// Smallest share of the best value that counts as equal.
 const EQUAL: f64 = 0.97;
 /// Largest number of neighbours that are tried at a time.
-const MOST_TRIED: usize = 6;
+const MAX_TRIED: usize = 6;
 /// Largest number of bodies.
-pub const MOST_BODIES: usize = 100;
+pub const MAX_BODIES: usize = 100;
 
 /// Indices of bodies.
 type Set = BTreeSet<usize>;
@@ -54,7 +54,7 @@ struct Withdrawal {
 /// # Errors
 /// If there are fewer than two bodies or too many, or none can be withdrawn.
 pub fn plugs(bodies: &[Vec<Triangle>]) -> Result<Vec<Vec<usize>>, MatingError> {
-    if !(2..=MOST_BODIES).contains(&bodies.len()) {
+    if !(2..=MAX_BODIES).contains(&bodies.len()) {
         return Err(MatingError::Bodies(bodies.len()));
     }
     let own = Part::new(&bodies.concat(), "assembly")?.own;
@@ -155,7 +155,7 @@ impl AxisMaps {
     fn new(bodies: &[Vec<Triangle>], contact: BTreeMap<[usize; 2], f64>) -> Self {
         let bounds: Vec<_> = bodies.iter().map(|body| bounds(body)).collect();
         let side = |axis: usize| width(span(bounds.iter().flat_map(|of| of[axis])));
-        let step = (side(0).max(side(1)) / MOST_CELLS).max(LEAST_CELL);
+        let step = (side(0).max(side(1)) / MAX_CELLS).max(MIN_CELL);
         let [upper, lower] =
             [Envelope::Upper, Envelope::Lower].map(|envelope| maps(bodies, envelope, step));
         AxisMaps { step, upper, lower, bounds, contact, walls: BTreeMap::new() }
@@ -211,7 +211,7 @@ impl AxisMaps {
         let mut ends: BTreeMap<Set, f64> = BTreeMap::new();
         for start in starts {
             let end = self.grown(start, &above);
-            ends.extend(end.filter(|(_, value)| *value > LEAST * LEAST));
+            ends.extend(end.filter(|(_, value)| *value > MIN_DEPTH * MIN_DEPTH));
         }
         let withdrawal =
             |(set, value): (Set, f64)| Withdrawal { plug: self.is_inner(&set), set, value };
@@ -231,7 +231,7 @@ impl AxisMaps {
             let others = (0..count).filter(|i| !set.contains(i)).map(|i| (share(&i), i));
             let mut near: Vec<(f64, usize)> = others.filter(|(share, _)| *share > 0.0).collect();
             near.sort_by(|a, b| b.0.total_cmp(&a.0));
-            let next = near.into_iter().take(MOST_TRIED).filter_map(|(_, i)| {
+            let next = near.into_iter().take(MAX_TRIED).filter_map(|(_, i)| {
                 let mut more = set.clone();
                 more.insert(i);
                 let more = closure(more, above);

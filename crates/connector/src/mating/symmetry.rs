@@ -9,7 +9,7 @@ use nalgebra::{Rotation3, Vector3};
 use rayon::prelude::*;
 
 /// Largest difference between heights of equal parts, m.
-const SAME: f32 = 0.05e-3;
+const HEIGHT_TOLERANCE: f32 = 0.05e-3;
 /// Number of cells of which one may differ between equal parts.
 const RARE: usize = 1000;
 
@@ -61,7 +61,7 @@ fn equal_pairs(maps: &[HeightMap]) -> Vec<(usize, usize)> {
     let within = |a: &HeightMap, [inner, outer]: &[HeightMap; 2]| {
         let differs = |[x, y]: &[i32; 2]| {
             let (z, one, two) = (a.at(*x, *y), inner.at(*x, *y), outer.at(*x, *y));
-            z < one.min(two) - SAME || z > one.max(two) + SAME
+            z < one.min(two) - HEIGHT_TOLERANCE || z > one.max(two) + HEIGHT_TOLERANCE
         };
         a.cells().filter(differs).count() * RARE <= a.heights.len()
     };

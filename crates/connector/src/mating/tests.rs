@@ -2,7 +2,7 @@
 
 use super::frame::turns;
 use super::*;
-use nalgebra::{Point3, Translation3, UnitQuaternion};
+use nalgebra::{Translation3, UnitQuaternion};
 
 static NEVER: AtomicBool = AtomicBool::new(false);
 
@@ -117,6 +117,36 @@ fn a_narrower_nose_is_ahead_of_the_part_that_engages() {
     assert!((mate.depth_m() - 16.0 * MM).abs() < CLOSE, "{mate:?}");
     let (mate, _) = found(&peg([3.0, 2.0]), &hole([6.0, 5.0], [3.1, 2.16], 4.0), 5);
     assert!(mate.nose_m < CLOSE, "{mate:?}");
+}
+
+/// A key on one side, at a corner, and the slot for it or for its mirror image.
+#[test]
+fn a_key_beside_its_slot_stops_the_plug_early() {
+    let keyed = |low: f64| {
+        let key = block([3.95, 4.0], [1.1, 2.0], [low, 12.0]);
+        let flange = block([0.0; 2], [10.0, 19.0], [12.0, 30.0]);
+        [block([0.0; 2], [7.0, 16.0], [0.0, 12.0]), key, flange].concat()
+    };
+    let walls = [
+        tube([0.0; 2], [18.0, 28.0], [9.2, 24.0], [0.0, 12.0]),
+        block([0.0, 10.05], [9.2, 3.9], [0.0, 12.0]),
+        block([0.0, -10.05], [9.2, 3.9], [0.0, 12.0]),
+        block([-4.1, 0.0], [1.0, 16.2], [0.0, 12.0]),
+        // The slot is between these two.
+        block([4.1, 6.6], [1.0, 3.0], [0.0, 12.0]),
+        block([4.1, -2.6], [1.0, 11.0], [0.0, 12.0]),
+        block([0.0; 2], [18.0, 28.0], [-2.0, 0.0]),
+    ];
+    let socket = walls.concat();
+    let (mate, _) = found(&keyed(2.0), &socket, 4);
+    assert_eq!(mate.missed_m, 0.0, "{mate:?}");
+    assert!((mate.engaged_m - 12.0 * MM).abs() < CLOSE, "{mate:?}");
+    for low in [2.0, 8.0] {
+        let (mate, _) = found(&mirrored(&keyed(low)), &socket, 4);
+        assert!((mate.engaged_m - low * MM).abs() < CLOSE, "{mate:?}");
+        assert!((mate.missed_m - (12.0 - low) * MM).abs() < 0.2 * MM, "{mate:?}");
+    }
+    assert_eq!(mates(&mirrored(&keyed(0.0)), &socket, &NEVER), Err(MatingError::NoFit));
 }
 
 /// The spring overlaps the plug by 0.2 mm, more than the plug can move.

@@ -27,7 +27,7 @@ impl Unit {
 
 /// Direction in which the plug is inserted, in the axes of the mesh files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-pub enum Along {
+pub enum InsertionAxis {
     /// Along x
     #[value(name = "x", alias = "+x")]
     PlusX,
@@ -50,7 +50,7 @@ pub enum Along {
 
 /// Axis of the mesh files along which the jaws close.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-pub enum Jaws {
+pub enum JawAxis {
     /// Along x
     X,
     /// Along y

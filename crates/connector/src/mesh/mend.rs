@@ -9,7 +9,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Widest gap that is closed, m.
 pub const GAP: f64 = 0.1 * MM;
 /// Largest number of corners on open edges; all pairs of them are compared.
-const MOST_CORNERS: usize = 4000;
+const MAX_CORNERS: usize = 4000;
 /// Largest number of passes that split edges, and therefore of corners on one edge.
 const ROUNDS: usize = 16;
 
@@ -17,7 +17,7 @@ const ROUNDS: usize = 16;
 /// any edge was open.
 pub fn mend(points: &[Point3<f64>], faces: &mut Vec<[usize; 3]>) -> bool {
     let corners: BTreeSet<usize> = open_edges(faces).into_keys().flatten().collect();
-    if corners.is_empty() || corners.len() > MOST_CORNERS {
+    if corners.is_empty() || corners.len() > MAX_CORNERS {
         return false;
     }
     let mut kept: Vec<usize> = Vec::new();

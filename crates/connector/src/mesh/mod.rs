@@ -11,6 +11,7 @@ mod surface;
 
 pub use read::{Body, Triangle, is_step, pick, read, shells};
 pub use reduce::{TOLERANCE, reduced};
+pub(crate) use solid::solid_of;
 pub use surface::{SIZES, Surface};
 
 /// File names of plug and socket for messages.

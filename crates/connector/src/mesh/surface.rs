@@ -14,7 +14,7 @@ pub const GRID: f64 = 1e-4 * MM;
 pub const SIZES: [f64; 2] = [3.0 * MM, 300.0 * MM];
 
 /// Smallest volume of a body, m3: the sign of a smaller volume may be due to rounding.
-const LEAST_VOLUME: f64 = 1.0 * MM * MM * MM;
+const MIN_VOLUME: f64 = 1.0 * MM * MM * MM;
 
 /// Closed triangle mesh, m.
 #[derive(Debug, Clone, PartialEq)]
@@ -36,7 +36,7 @@ impl Surface {
             faces = without_films(faces);
         }
         let volume = surface_moments(&points, &faces).0;
-        if !closed(&faces) || volume.abs() < LEAST_VOLUME {
+        if !closed(&faces) || volume.abs() < MIN_VOLUME {
             return None;
         }
         let was_inward = volume < 0.0;
@@ -49,11 +49,6 @@ impl Surface {
     /// Returns the triangles, m.
     pub fn triangles(&self) -> Vec<Triangle> {
         self.faces.iter().map(|face| face.map(|corner| self.points[corner])).collect()
-    }
-
-    /// Returns the enclosed volume, m3.
-    pub fn volume(&self) -> f64 {
-        surface_moments(&self.points, &self.faces).0
     }
 }
 

@@ -20,7 +20,7 @@ use rayon::prelude::*;
 use std::ops::Range;
 
 /// Largest number of windows that are measured.
-pub const MOST_WINDOWS: usize = 150;
+pub const MAX_WINDOWS: usize = 150;
 /// Number of candidates proposed at a time; fixed, so that results do not depend on the number of threads.
 const BATCH: usize = 4;
 /// Number of windows measured for a candidate: one for each finger.
@@ -37,7 +37,7 @@ const TURNED: Range<usize> = 1..3;
 const FINALISTS: usize = 12;
 /// Number of failures at one tilt after which other strategies with that tilt are skipped, since similar
 /// ones fail alike.
-const MOST_FAILED: usize = 2;
+const MAX_FAILED: usize = 2;
 
 /// Stage of tuning.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
@@ -110,7 +110,7 @@ pub struct Effort<'a> {
 pub fn tune(tuner: &Tuner, effort: &Effort) -> Result<Tuned, DesignError> {
     let mut tuned = Tuned { steps: Vec::new(), best: 0, robustness: Vec::new(), windows: 0 };
     let given = tuner.given(&tuner.task.strategy)?;
-    tuned.add(Stage::AsItIs, vec![("as it is".to_owned(), given)], effort);
+    tuned.add(Stage::AsItIs, vec![("strategy as given".to_owned(), given)], effort);
     for stage in [Stage::Start, Stage::Families, Stage::Search] {
         let can_end = stage > Stage::Start && effort.until_enough;
         let best = &tuned.best().tried;
@@ -156,7 +156,7 @@ impl Tuned {
             self.windows += last.cost;
             let best = self.steps.get(self.best).map_or(last.score, |best| best.tried.score);
             let text = format!("{:.1} mm so far; {change}", best.max(last.score).max(0.0));
-            (effort.progress)(&text, last.cost, self.windows, MOST_WINDOWS);
+            (effort.progress)(&text, last.cost, self.windows, MAX_WINDOWS);
             let second = self.steps.len() == 1;
             let better = self.steps.get(self.best).is_some_and(|best| {
                 let (own, best) = (best.stage == stage, &best.tried);
@@ -214,7 +214,7 @@ impl Tuned {
         let free = variables::variables(&task.strategy)?;
         let grid = Grid::new(vec![variables::LEVELS; free.len()]);
         let mut optimizer = ask_tell::build(OptimizerKind::Gp, grid.clone(), effort.seed);
-        let limit = MOST_WINDOWS - Self::CHECKS - EACH;
+        let limit = MAX_WINDOWS - Self::CHECKS - EACH;
         let middle = grid.snap(&vec![0.5; free.len()]);
         optimizer.tell(&[Observation::new(middle, Some(self.best().tried.score))]);
         while self.windows + BATCH * EACH <= limit {
@@ -261,7 +261,7 @@ impl Tuned {
             if checked == FINALISTS || score[place] <= most.1 + INDIFFERENCE_MM {
                 break;
             }
-            if with_tilt == MOST_FAILED {
+            if with_tilt == MAX_FAILED {
                 continue;
             }
             checked += 1;

@@ -143,8 +143,8 @@ impl<'a> Tuner<'a> {
     /// Scores a strategy by the windows of the three fingers.
     fn tried(&self, strategy: Strategy, found: Vec<Evaluation>) -> Candidate {
         let failed = found.iter().filter(|found| found.window.nominal != Outcome::Inserted);
-        // If the nominal start fails, the share is its margin.
-        let worst = failed.map(|found| found.end_shares[0]).reduce(f64::min);
+        // If the nominal start fails, the share is its margin; that of a trial without a depth is not a number.
+        let worst = failed.map(|found| found.end_shares[0].max(-1.0)).reduce(f64::min);
         let force_n = found.iter().map(|found| found.peak_force_n).fold(0.0, f64::max);
         let windows: Vec<_> = found.into_iter().map(|found| found.window).collect();
         let least = windows.iter().map(Window::range_mm).fold(f64::INFINITY, f64::min);

@@ -12,7 +12,7 @@ use parameters::Parameter;
 /// Number of levels of a variable; odd, so that the current value is one of them.
 pub const LEVELS: u32 = 31;
 /// Largest tilt, degrees: the larger published tilt plus the shift that `priors/levers.toml` allows.
-const MOST_TILT_DEG: f64 = 15.0;
+const MAX_TILT_DEG: f64 = 15.0;
 
 /// Variable of the search; its range is scaled so that the current value is in the middle.
 pub struct SearchVariable {
@@ -76,7 +76,7 @@ pub fn strategy_at(task: &Task, variables: &[SearchVariable], unit: &[f64]) -> (
         let phases = &mut strategy.phases;
         match variable.target {
             Target::Tilt => {
-                let tilt = variable.at(strategy.tilt / DEG, share, 0.1).clamp(0.0, MOST_TILT_DEG);
+                let tilt = variable.at(strategy.tilt / DEG, share, 0.1).clamp(0.0, MAX_TILT_DEG);
                 strategy.tilt = tilt * DEG;
                 changes.push(format!("tilt {tilt:.1}°"));
             }

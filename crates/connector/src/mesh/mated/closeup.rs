@@ -2,17 +2,13 @@
 
 use super::gaps::Bodies;
 use crate::mesh::Triangle;
-use crate::picture::VIEWS;
+use crate::picture::{INSIDE, PANEL, VIEWS};
 use contact::scene::Pose;
 use drawing::{Drawing, Font, Style, View};
 use input::units::MM;
 use insertion::task::{Part, geometry};
 use nalgebra::{Point2, Point3};
 
-/// Size of a panel with the gap to the next one, pixels.
-const PANEL: f64 = 460.0;
-/// Size of a panel without the gap, pixels.
-const INSIDE: f64 = PANEL - 10.0;
 /// Distance from the point to the sides of a panel, m.
 const AROUND: f64 = 1.0 * MM;
 const DRAWN: [Style; 2] = [Style::line("#8a5a10", 2.0), Style::line("#56657d", 2.0)];

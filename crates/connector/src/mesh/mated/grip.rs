@@ -11,9 +11,9 @@ use insertion::task::Part;
 use nalgebra::Point3;
 
 /// Smallest height of the faces between the pads, m.
-const LEAST_HEIGHT: f64 = 3.0 * MM;
+const MIN_HEIGHT: f64 = 3.0 * MM;
 /// Smallest width of a face in x, m.
-const LEAST_WIDTH: f64 = 1.0 * MM;
+const MIN_WIDTH: f64 = 1.0 * MM;
 /// Smallest distance of pads and handle from the socket, m.
 const CLEAR: f64 = 0.5 * MM;
 /// Ratio of areas above which a grasp across the second axis is preferred to one across the first.
@@ -127,7 +127,7 @@ fn grasp_at(
 ) -> Result<(f64, Grasp), &'static str> {
     let (x, z) = (common(low.x, high.x), common(low.z, high.z));
     let faces = [low.y, high.y];
-    if width(x) < LEAST_WIDTH {
+    if width(x) < MIN_WIDTH {
         return Err("they are too narrow");
     }
     if !(FACES_MM[0]..=FACES_MM[1]).contains(&(width(faces) / MM)) {
@@ -154,7 +154,7 @@ fn grasp_at(
     if (tops[0] - tops[1]).abs() > SEAM {
         return Err("the roofs of the fingertips would rest at different heights");
     }
-    if width(held) < LEAST_HEIGHT {
+    if width(held) < MIN_HEIGHT {
         return Err("the pads, with their roofs on top, would cover too little of them");
     }
     if pads[0] < free + CLEAR {
@@ -174,26 +174,26 @@ fn grasp_at(
 /// If they cannot: what they need.
 pub fn check_handle(Size { width, height, length }: Size) -> Result<(), String> {
     let [near, far] = FACES_MM;
-    if (near * MM..=far * MM).contains(&width) && height >= LEAST_WIDTH && length >= LEAST_HEIGHT {
+    if (near * MM..=far * MM).contains(&width) && height >= MIN_WIDTH && length >= MIN_HEIGHT {
         return Ok(());
     }
-    let [high, long] = [LEAST_WIDTH, LEAST_HEIGHT].map(|side| side / MM);
+    let [high, long] = [MIN_WIDTH, MIN_HEIGHT].map(|side| side / MM);
     Err(format!(
         "the pads need {near} to {far} mm between the jaws, a height of at least {high} mm and a length of at least \
          {long} mm"
     ))
 }
 
-/// Returns the grasp of a handle of a size (x, y, z), m, which is added to the top of the plug and stays above `free`,
+/// Returns the grasp of a handle of a size, which is added to the top of the plug and stays above `free`,
 /// m.
-pub fn handle(plug: &[Triangle], [x, y, z]: [f64; 3], free: f64) -> Grasp {
+pub fn handle(plug: &[Triangle], size: Size, free: f64) -> Grasp {
     let [_, top] = extent(plug.iter().flatten(), 2);
     let low = (top - ENCLOSED).max(free + CLEAR);
     // The pads stay above the socket too.
-    let shoulder = (low + z).max(free + CLEAR + Pad::PUBLISHED.height);
-    let faces = [-y / 2.0, y / 2.0];
-    let part = block("handle", [[-x / 2.0, x / 2.0], faces, [low, shoulder]]);
-    Grasp { shoulder, faces, part, area: x.min(width(PAD_X)) * z }
+    let shoulder = (low + size.length).max(free + CLEAR + Pad::PUBLISHED.height);
+    let [faces, x] = [size.width, size.height].map(|side| [-side / 2.0, side / 2.0]);
+    let part = block("handle", [x, faces, [low, shoulder]]);
+    Grasp { shoulder, faces, part, area: width(common(x, PAD_X)) * size.length }
 }
 
 #[cfg(test)]

@@ -12,7 +12,8 @@ use super::Triangle;
 use super::skin::skin;
 use super::surface::snap;
 use crate::body::{clipped, extent, span, width};
-use crate::{draft, plan};
+use crate::draft::{self, Size};
+use crate::plan;
 use contact::scene::Pose;
 pub use grip::{Grasp, Rejected, check_handle};
 use input::units::MM;
@@ -23,12 +24,12 @@ use reach::Reach;
 pub use verify::{Deviation, TOLERANCE};
 use verify::{Drawn, worst};
 
-/// Size of the handle that is added to a plug without faces to hold: in x, between the jaws, and length, m.
-pub const HANDLE: [f64; 3] = [12.0 * MM, 10.0 * MM, 20.0 * MM];
+/// Size of the handle that is added to a plug without faces to hold.
+pub const HANDLE: Size = Size { width: 10.0 * MM, height: 12.0 * MM, length: 20.0 * MM };
 /// Height of the tip of the plug, m; its axis goes through the middle of the tip.
 const TIP: f64 = 1.0 * MM;
 /// Smallest play assumed between plug and opening, m.
-const LEAST_PLAY: f64 = 0.02 * MM;
+const MIN_PLAY: f64 = 0.02 * MM;
 
 /// Meshes of a plug and a socket in their mated pose.
 pub struct Pair<'a> {
@@ -55,6 +56,8 @@ pub struct Pair<'a> {
 pub struct PairTask {
     /// Task.
     pub task: Task,
+    /// Whether plug and socket are probably swapped: only the socket, which is inside the plug, has faces to hold.
+    pub swapped: bool,
     /// Direction along which the jaws close.
     pub jaws: Vector3<f64>,
     /// Total play of the mated plug in x and in y, m.
@@ -123,22 +126,22 @@ impl AlignedPair {
     }
 }
 
-/// Returns the task of a pair in its mated pose; friction, fingers, grasp force, limits and the family of the strategy
-/// are those of `like`, if it is given. With a `size` (in x, between the jaws, length, m), the plug is held by a handle
-/// of this size, else by its own faces if possible.
-pub fn task(pair: &Pair, name: &str, like: Option<&Task>, size: Option<[f64; 3]>) -> PairTask {
+/// Returns the task of a pair in its mated pose, with an upright strategy; friction, fingers, grasp force and limits are
+/// those of `like`, if it is given. With a `size`, the plug is held by a handle of this size, else by its own faces if
+/// possible.
+pub fn task(pair: &Pair, name: &str, like: Option<&Task>, size: Option<Size>) -> PairTask {
     // Rounded to the grid of files, so that corners stay on it.
     let pair = &Pair { depth: snap(pair.depth), ..*pair };
     let first = pair.jaws.first().copied().unwrap_or_else(Vector3::y);
     let top = |placed: &AlignedPair| extent(placed.socket.iter().flatten(), 2)[1];
-    let held = |jaws: &Vector3<f64>| {
+    let held = |pair: &Pair, jaws: &Vector3<f64>| {
         let placed = AlignedPair::new(pair, *jaws);
         let (grasp, larger) = grip::own(&placed.plug, pair.depth + top(&placed).max(0.0));
         (placed, grasp, larger)
     };
     let axes = if size.is_some() { &[] } else { pair.jaws };
     let (mut own, mut refused): (Option<(AlignedPair, Grasp)>, Vec<Rejected>) = (None, Vec::new());
-    for (placed, grasp, larger) in axes.iter().map(held) {
+    for (placed, grasp, larger) in axes.iter().map(|jaws| held(pair, jaws)) {
         refused.extend(larger);
         let Some(grasp) = grasp else { continue };
         if own.as_ref().is_none_or(|(_, first)| grasp.replaces(first)) {
@@ -148,6 +151,8 @@ pub fn task(pair: &Pair, name: &str, like: Option<&Task>, size: Option<[f64; 3]>
     let area = own.as_ref().map_or(0.0, |(_, grasp)| grasp.area);
     let rejected = refused.into_iter().find(|faces| faces.area > area);
     let handle = own.is_none();
+    let other = Pair { plug: pair.socket, socket: pair.plug, out: -pair.out, ..*pair };
+    let swapped = handle && axes.iter().any(|jaws| held(&other, jaws).1.is_some());
     let (placed, grasp) = own.unwrap_or_else(|| {
         let placed = AlignedPair::new(pair, first);
         let size = size.unwrap_or(HANDLE);
@@ -155,7 +160,7 @@ pub fn task(pair: &Pair, name: &str, like: Option<&Task>, size: Option<[f64; 3]>
         (placed, grasp)
     });
     let (mut parts, deviation) = skins(&placed, pair.depth);
-    let tight = placed.play.iter().any(|play| *play < LEAST_PLAY);
+    let tight = placed.play.iter().any(|play| *play < MIN_PLAY);
     let (interference, left_out) = overlap::cut(&mut parts, pair.depth, tight);
     let drawn = [&placed.drawn[0][..], &placed.drawn[1]];
     let ([plug, socket], play) = (&parts, placed.play);
@@ -171,15 +176,12 @@ pub fn task(pair: &Pair, name: &str, like: Option<&Task>, size: Option<[f64; 3]>
     let mut task = draft::blank(name, like);
     task.plug.mass = draft::DENSITY * volume(&placed.plug).max(geometry::volume(&grasp.part.solid));
     (task.plug.parts, task.socket, task.left_out) = (plug, socket, left_out);
-    let play = placed.play.map(|play| play.max(LEAST_PLAY));
+    let play = placed.play.map(|play| play.max(MIN_PLAY));
     task.opening = opening(&placed.plug, pair.depth, play);
     (task.grip.shoulder_z, task.grip.faces_y) = (grasp.shoulder, grasp.faces);
-    let mut task = plan::mated(task, pair.depth, pair.nose, play);
-    let like = like.map(|like| plan::Family::Like(Box::new(like.clone())));
-    if let Some(strategy) = like.and_then(|family| family.strategy_for(&task)) {
-        task.strategy = strategy;
-    }
+    let task = plan::mated(task, pair.depth, pair.nose, play);
     PairTask {
+        swapped: swapped && plan::has_core(&task),
         task,
         jaws: placed.jaws,
         play: placed.play,

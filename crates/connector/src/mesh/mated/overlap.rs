@@ -20,7 +20,7 @@ const FIT: f64 = 0.1 * MM;
 /// play with which strategies are known to insert.
 pub const GAP: f64 = 0.025 * MM;
 /// Smallest overlap that is considered, m.
-const LEAST: f64 = 1e-3 * MM;
+const MIN_OVERLAP: f64 = 1e-3 * MM;
 /// Step along the path to the mated pose, m.
 const STEP: f64 = 0.2 * MM;
 /// Smallest component of a normal along the axis at which an overlap belongs to a stop.
@@ -103,7 +103,7 @@ fn cut_back(bodies: &mut [Vec<Part>; 2], depth: f64, tight: bool) -> Vec<Interfe
         true => (GAP, &[[GAP, 0.0], [-GAP, 0.0], [0.0, GAP], [0.0, -GAP]][..]),
         false => (0.0, &[[0.0; 2]][..]),
     };
-    let touching = aside.iter().flat_map(|&aside| overlaps(bodies, depth, LEAST, aside));
+    let touching = aside.iter().flat_map(|&aside| overlaps(bodies, depth, MIN_OVERLAP, aside));
     let pairs: BTreeSet<[usize; 2]> = touching.map(|touch| touch.parts).collect();
     let mut left = bodies.each_ref().map(|parts| -> Vec<Option<Solid>> {
         parts.iter().map(|part| Some(part.solid.clone())).collect()

@@ -20,7 +20,7 @@ const SEARCH: f64 = 4.0 * MM;
 /// than 0, because the plug can be tilted.
 const AWAY: f64 = 0.35;
 /// Largest number of cells along one side of a map.
-const MOST_CELLS: f64 = 2000.0;
+const MAX_CELLS: f64 = 2000.0;
 
 /// Largest heights of triangles over the cells of a grid.
 struct UpperEnvelope {
@@ -35,7 +35,7 @@ impl UpperEnvelope {
     fn new(triangles: &[Triangle], sign: f64) -> Self {
         let ranges = [0, 1].map(|axis| extent(triangles.iter().flatten(), axis));
         let longest = ranges.iter().map(|[low, high]| high - low).fold(0.0, f64::max);
-        let cell = CELL.max(longest / MOST_CELLS);
+        let cell = CELL.max(longest / MAX_CELLS);
         let low = ranges.map(|[low, _]| low - cell);
         let size = [0, 1].map(|i| ((ranges[i][1] - low[i]) / cell) as usize + 2);
         let heights = vec![f64::NEG_INFINITY; size[0] * size[1]];

@@ -18,10 +18,10 @@ pub const TOLERANCE: f64 = 0.02 * MM;
 /// Three times the distance of the outermost samples of a triangle from an edge, as a share of the height above that
 /// edge.
 const MARGIN: f64 = 0.1;
-/// Largest spacing of samples along a side, m, up to [`MOST_SAMPLES`].
+/// Largest spacing of samples along a side, m, up to [`MAX_SAMPLES`].
 const SPACING: f64 = 0.5 * MM;
 /// Largest number of intervals between samples along the side of a triangle.
-const MOST_SAMPLES: usize = 12;
+const MAX_SAMPLES: usize = 12;
 
 /// Place where parts and drawing differ.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -111,7 +111,7 @@ impl<'a> Drawn<'a> {
 /// Returns evenly spaced points inside a triangle.
 fn samples([a, b, c]: &Triangle) -> Vec<Point3<f64>> {
     let longest = (b - a).norm().max((c - a).norm()).max((c - b).norm());
-    let steps = ((longest / SPACING).ceil() as usize).clamp(1, MOST_SAMPLES);
+    let steps = ((longest / SPACING).ceil() as usize).clamp(1, MAX_SAMPLES);
     let mut found = Vec::new();
     for i in 0..=steps {
         for j in 0..=steps - i {

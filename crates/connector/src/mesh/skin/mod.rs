@@ -24,11 +24,11 @@ const THICK: f64 = 0.25 * MM;
 /// Smallest thickness of a slab, m.
 const THIN: f64 = 10e-3 * MM;
 /// Smallest length of a side at which a polygon is cut into pieces, m.
-const LEAST_PIECE: f64 = 0.2 * MM;
+const MIN_PIECE: f64 = 0.2 * MM;
 /// Smallest size of a solid along an axis, m.
-const LEAST_SIZE: f64 = 2e-3 * MM;
+const MIN_SIZE: f64 = 2e-3 * MM;
 /// Smallest volume of a solid, m3, with a margin for the rounding in files.
-const LEAST_VOLUME: f64 = 10.0 * MIN_VOLUME;
+const MIN_SOLID_VOLUME: f64 = 10.0 * MIN_VOLUME;
 /// Width of the border of a polygon behind which faces do not limit the thickness, m.
 const BESIDE: f64 = 5e-3 * MM;
 /// Smallest depth of a face that limits the thickness, m; shallower ones are the polygon's own.
@@ -36,7 +36,7 @@ const BEHIND: f64 = 5e-3 * MM;
 /// Largest height of a corner above a plane that still counts as below it, m.
 const CONVEX: f64 = 2e-3 * MM;
 /// Largest number of corners of a convex body that becomes one part.
-const MOST_CORNERS: usize = 400;
+const MAX_CORNERS: usize = 400;
 /// Largest cosine between opposite faces that are cut at their common edge; above it, they are the two sides of a film.
 const FILM: f64 = 0.9999;
 /// Margin of the bounding boxes in which faces are searched for, mm.
@@ -91,7 +91,7 @@ fn convex_body(facets: &Facets, shell: &[usize]) -> Option<Solid> {
         let (normal, origin) = (facets.normals[face], facets.corners(face)[0]);
         corners.iter().all(|&corner| (facets.points[corner] - origin).dot(&normal) < CONVEX)
     };
-    if corners.len() > MOST_CORNERS || !shell.iter().all(flat) {
+    if corners.len() > MAX_CORNERS || !shell.iter().all(flat) {
         return None;
     }
     solid_of(&corners.iter().map(|&corner| facets.points[corner]).collect::<Vec<_>>())
@@ -207,7 +207,7 @@ fn halves(corners: &[Point3<f64>]) -> Option<[Vec<Point3<f64>>; 2]> {
     let [a, b] = (0..corners.len())
         .map(ends)
         .max_by(|[a, b], [c, d]| (b - a).norm().total_cmp(&(d - c).norm()))
-        .filter(|[a, b]| (b - a).norm() > LEAST_PIECE)?;
+        .filter(|[a, b]| (b - a).norm() > MIN_PIECE)?;
     let middle = nalgebra::center(&a, &b);
     Some([b - a, a - b].map(|normal| cut(corners.to_vec(), &middle, &normal)))
 }
@@ -232,8 +232,8 @@ pub fn snapped_hull(points: &[Point3<f64>]) -> Option<Solid> {
     let points: Vec<_> = points.iter().map(|p| Point3::from(p.coords.map(snap))).collect();
     // The size along each axis and the volume must be large enough for files.
     let is_thick = |solid: &Solid| {
-        (0..3).all(|axis| width(extent(solid.corners(), axis)) >= LEAST_SIZE)
-            && volume(solid) >= LEAST_VOLUME
+        (0..3).all(|axis| width(extent(solid.corners(), axis)) >= MIN_SIZE)
+            && volume(solid) >= MIN_SOLID_VOLUME
     };
     solid_of(&points).filter(is_thick)
 }

@@ -150,7 +150,7 @@ fn a_study_with_measurements_leads_with_the_finger_that_is_best_on_the_bench() {
     let headline = before["answer"]["headline"].as_str().expect("words");
     assert!(headline.ends_with("you measured 9.9 mm"), "{headline}");
     assert!(headline.contains(", which you have printed: "), "{headline}");
-    let words = "printing another finger is worth it";
+    let words = "another print is worth it";
     assert!(before["answer"]["next"]["why"].as_str().is_some_and(|why| why.contains(words)));
     known["ranges"] = serde_json::json!([]);
     known["bounds"] = serde_json::json!([[best["values"], 1.5]]);

@@ -147,8 +147,8 @@ fn a_force_that_the_connector_does_not_withstand_comes_first() {
     stops.says(&["the 7 N at which"]);
     let evaluate = "evaluate --task usb --density 20 --direction 10 --robot";
     let of = |robot: &str| fake(&format!("{evaluate} {robot}"));
-    of(&robot).says(&["above the limit of connector or robot, 7 N"]);
-    assert!(!of("servo").succeeds().contains("above the limit"));
+    of(&robot).says(&["above the acceptable force of connector and robot, 6 N"]);
+    assert!(!of("servo").succeeds().contains("above the acceptable"));
     // With a wide indifference some design keeps to the limit, and the safe choice is such a one.
     study("middling", 8.25);
     let task = studies.word("middling.toml");

@@ -34,6 +34,29 @@ class Trust(Result):
 
 
 @dataclass(frozen=True, repr=False)
+class ComparedFinger(Result):
+    """Finger with a simulated and a measured range."""
+
+    values: dict[str, float]
+    simulated_range_mm: float
+    measured_range_mm: float
+
+
+@dataclass(frozen=True, repr=False)
+class RankCorrelation(Result):
+    """Spearman's rank correlation of the simulated and measured ranges of ``designs`` published fingers.
+
+    ``best`` is the one with the largest measured range; ``source`` describes the simulation.
+    """
+
+    task: str
+    spearman: float
+    designs: int
+    source: str
+    best: ComparedFinger
+
+
+@dataclass(frozen=True, repr=False)
 class StartAdvice(Result):
     """Window around the taught start, mm; ``advice`` if the start should be taught elsewhere.
 
@@ -113,6 +136,7 @@ class Answer(Result):
     finger: dict[str, float] | None
     force: ExcessForce | None
     trust: Trust
+    rank_correlations: tuple[RankCorrelation, ...]
     start: StartAdvice | None
     as_good: AsGood | None
     next: NextStep

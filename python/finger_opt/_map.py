@@ -117,6 +117,8 @@ class Levers(Result):
     """
 
     sentence: str
+    #: Smallest ranges over parameters that a user does not set, in words; None if none of them narrows the window.
+    uncertainty: str | None
     task: str
     design: dict[str, float]
     base: Taught

@@ -71,7 +71,7 @@ pub struct Evaluated {
     /// Measurements of this finger on the bench.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub measured: Vec<Experiment>,
-    /// Limit of the contact force, N: the smaller of the connector's limit and the robot's stop force.
+    /// Largest acceptable contact force for connector and robot, N.
     #[serde(skip)]
     pub limit_n: f64,
     /// Bands of offsets at the window's ends in which repeats have different outcomes, with `--repeat`.
@@ -123,7 +123,7 @@ impl Request {
         let repeat = self.repeat.filter(|_| window.nominal == Outcome::Inserted);
         let bands = repeat.map(bands).transpose()?;
         context.end();
-        let limit_n = limit_n(&setup, &chosen);
+        let limit_n = setup.evaluator.robot.acceptable_force(chosen.scenario.task.limits.force);
         Ok(Evaluated { chosen, evaluation, bands, computed, wall_s, measured, limit_n })
     }
 
@@ -176,12 +176,6 @@ impl Request {
     }
 }
 
-/// Returns the limit of the contact force, N: the smaller of the connector's limit and the robot's stop force.
-pub(crate) fn limit_n(setup: &Setup, chosen: &ChosenFinger) -> f64 {
-    let stop_n = setup.evaluator.robot.stop_force;
-    chosen.scenario.task.limits.force.map_or(stop_n, |force| force.min(stop_n))
-}
-
 /// Serializes the evaluation by the ribs, or the reason why there is none.
 fn computed<S: Serializer>(by_ribs: &Option<ByRibs>, serializer: S) -> Result<S::Ok, S::Error> {
     match by_ribs {
@@ -213,18 +207,19 @@ impl Evaluated {
 
     /// Returns a remark if no range was measured and those of both finger models differ by more than a factor of two.
     fn disagreement(&self) -> Option<&'static str> {
-        let Some(ByRibs::Measured(tasks)) = &self.computed else { return None };
-        if !self.measured.is_empty() {
-            return None;
-        }
+        let tasks = match &self.computed {
+            Some(ByRibs::Measured(tasks)) if self.measured.is_empty() => tasks,
+            _ => return None,
+        };
         let range_mm = self.evaluation.window.range_mm();
         let apart = |ribs: &Evaluation| {
             let other_mm = ribs.window.range_mm();
             lines::comparable(ribs, &self.evaluation)
                 && range_mm.min(other_mm) < 0.5 * range_mm.max(other_mm)
         };
-        let remark = "the ranges differ by more than a factor of two: measure a finger before you rely on either";
-        tasks.iter().any(apart).then_some(remark)
+        tasks.iter().any(apart).then_some(
+            "the ranges differ by more than a factor of two: measure a finger before you rely on either",
+        )
     }
 
     fn text(&self) -> String {
@@ -240,7 +235,10 @@ impl Evaluated {
         rest.push(("failures".to_owned(), failures));
         let mut force = number(evaluation.peak_force_n, 1, "N");
         if evaluation.peak_force_n > self.limit_n {
-            force += &format!(", above the limit of connector or robot, {:.0} N", self.limit_n);
+            force += &format!(
+                ", above the acceptable force of connector and robot, {:.0} N",
+                self.limit_n
+            );
         }
         rest.push(("peak force".to_owned(), force));
         let mating = words::mating_force(chosen.scenario.task.largest_mating_force());

@@ -113,10 +113,8 @@ impl Mapped {
     fn text(&self) -> String {
         let Mapped { chosen, map } = self;
         let [first, second] = &map.axes;
-        let mut lines = vec![(
-            "area".to_owned(),
-            format!("{:.1} {}, of starts that insert", map.area, map.area_unit),
-        )];
+        let area = format!("{:.1} {}, of starts that insert", map.area, map.area_unit);
+        let mut lines = vec![("area".to_owned(), area)];
         for (number, axis) in map.axes.iter().enumerate() {
             let ends = map.ends(number);
             let text = ends.map_or("nothing inserts".to_owned(), |[low, high]| {
@@ -125,22 +123,15 @@ impl Mapped {
             });
             lines.push((format!("along {}", axis.name), text));
         }
-        let window =
-            map.window_mm().map_or("fails at the nominal start".to_owned(), |[low, high]| {
-                format!("{low:+} to {high:+} mm")
-            });
+        let window = map.window_mm().map(|[low, high]| format!("{low:+} to {high:+} mm"));
+        let window = window.unwrap_or("fails at the nominal start".to_owned());
         lines.push((format!("at {} = 0", second.name), window));
-        let coarser = if map.traced_step > first.step {
-            format!("; border traced to {} only (limit of trials)", map.traced_step)
-        } else {
-            String::new()
-        };
+        let coarser = (map.traced_step > first.step)
+            .then(|| format!("; border traced to {} only (limit of trials)", map.traced_step));
         let points: usize = map.outcomes.iter().map(Vec::len).sum();
         let steps = format!("{} {}, {} {}", first.step, first.unit, second.step, second.unit);
-        lines.push((
-            "trials".to_owned(),
-            format!("{} for {points} grid points, every {steps}{coarser}", map.trials),
-        ));
+        let trials = format!("{} for {points} grid points, every {steps}", map.trials);
+        lines.push(("trials".to_owned(), trials + &coarser.unwrap_or_default()));
         chosen.text() + &layout::lines(lines)
     }
 }

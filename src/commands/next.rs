@@ -184,8 +184,7 @@ impl Advised {
                 &format!("   expected improvement of the finger chosen afterwards: {gain:.2} mm\n");
         }
         if advice.stop {
-            let gain = format!("more than {print_cost_mm} mm");
-            text += &format!("stop: no print is expected to improve the chosen finger by {gain}\n");
+            text += &format!("stop: no print is worth more than {print_cost_mm} mm\n");
         }
         if let Some(choice) = advice.choice.as_ref().filter(|_| advice.stop || *measured > 0) {
             let known = if choice.measured { "measured" } else { "not measured" };

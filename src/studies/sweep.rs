@@ -1,6 +1,6 @@
 //! Windows of many fingers on one task.
 
-use crate::commands::evaluate::{Evaluated, Request as EvaluateRequest, limit_n};
+use crate::commands::evaluate::{Evaluated, Request as EvaluateRequest};
 use crate::context::not_stopped;
 use crate::failure::Failure;
 use crate::setup::Setup;
@@ -59,7 +59,8 @@ impl Sweep {
             let (evaluation, _) =
                 evaluator.evaluate_scenario(&chosen.scenario, plan).map_err(Failure::input)?;
             let wall_s = clock.elapsed().as_secs_f64();
-            let limit_n = limit_n(setup, &chosen);
+            let connector = chosen.scenario.task.limits.force;
+            let limit_n = setup.evaluator.robot.acceptable_force(connector);
             let (bands, computed, measured) = (None, None, Vec::new());
             Ok(Evaluated { chosen, evaluation, bands, computed, wall_s, measured, limit_n })
         };

@@ -3,6 +3,7 @@
 use super::open::Ended;
 use super::report::PAGE;
 use crate::layout;
+use analysis::levers::Levers;
 use report::PostAnalysis;
 use report::answer::lines;
 use report::answer::words::{evaluated, volume_unit};
@@ -18,13 +19,11 @@ pub fn ended(ended: &Ended, answer: &Answer, all: bool) -> String {
 
 /// Returns the text of the analyses after a study.
 pub fn analyses(PostAnalysis { levers, robots, .. }: &PostAnalysis) -> String {
-    let levers = levers.iter().map(|levers| {
-        let uncertainty = levers.uncertainty();
-        let uncertainty = uncertainty.map(|text| format!("uncertain     {text}\n"));
-        uncertainty.unwrap_or_default() + &format!("levers        {}\n", levers.sentence())
-    });
-    let robots = robots.iter().map(|found| format!("robot         {}\n", found.words()));
-    layout::wrapped(&levers.chain(robots).collect::<String>())
+    let line = |name: &str, text: String| (name.to_owned(), text);
+    let least = levers.iter().filter_map(Levers::uncertainty).map(|text| line("uncertain", text));
+    let levers = levers.iter().map(|levers| line("levers", levers.sentence()));
+    let robots = robots.iter().map(|found| line("robot", found.words()));
+    layout::wrapped(&layout::lines(least.chain(levers).chain(robots)))
 }
 
 /// Returns the text of the answer and the next command.

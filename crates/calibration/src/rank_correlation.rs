@@ -1,14 +1,11 @@
 //! Rank correlation of simulated and measured ranges.
 
-use crate::experiments::Experiment;
-use crate::published::{BENCH, of_task};
 use ask_tell::statistics::{mean, spearman};
 use input::shipped::TASKS;
-use insertion::evaluation::objective::Measure;
 use insertion::finger::model::FingerModelKind;
 use insertion::space::Design;
 use serde::{Deserialize, Serialize};
-use study::StudyRecord;
+use study::StudyConfig;
 
 /// Simulated and measured ranges: some columns of the committed `results/reference/validation/validation.csv`.
 const VALIDATION: &str = include_str!("../../../data/simulated_ranges.csv");
@@ -56,33 +53,16 @@ struct ValidationRow {
     bench_range_mm: Option<f64>,
 }
 
-/// Returns the rank correlation on a task: of the study's own ranges if it simulated all measured fingers, else of the
-/// committed validation.
-pub fn rank_correlation(record: &StudyRecord, task: usize) -> Option<RankCorrelation> {
-    let name = record.config.tasks().nth(task)?;
-    let bench = of_task(name, BENCH);
-    let pair = |bench: &Experiment| {
-        let found = record.current().iter().find(|recorded| recorded.design == bench.design)?;
-        Some(ComparedFinger {
-            design: bench.design.clone(),
-            simulated_mm: Measure::Range.value(found.on(task)?)?,
-            measured_mm: bench.range_mm?,
-        })
-    };
-    let own: Vec<ComparedFinger> = bench.iter().filter_map(pair).collect();
-    let all = bench.iter().filter(|bench| bench.range_mm.is_some()).count();
-    let config = &record.config;
+/// Returns the rank correlation on a task in the committed validation; `None` for a user's own task.
+pub fn rank_correlation(config: &StudyConfig, task: &str) -> Option<RankCorrelation> {
     let like_validation =
         config.finger_model == FingerModelKind::Paper && config.robot == VALIDATION_ROBOT;
-    let (compared, source) = match (own.len() == all, like_validation) {
-        (true, _) => (own, "model in this study"),
-        (false, true) => (validation(name), "model"),
-        (false, false) => (validation(name), "model with paper fingers on servo"),
-    };
+    let source = if like_validation { "model" } else { "model with paper fingers on servo" };
+    let compared = validation(task);
     let (spearman, fingers) = (spearman(&pairs(&compared))?, compared.len());
     let widest = |a: &ComparedFinger, b: &ComparedFinger| a.measured_mm.total_cmp(&b.measured_mm);
     let best = compared.into_iter().max_by(widest)?;
-    Some(RankCorrelation { task: name.to_owned(), spearman, fingers, source, best })
+    Some(RankCorrelation { task: task.to_owned(), spearman, fingers, source, best })
 }
 
 /// Returns the simulated and the measured ranges of fingers, mm.

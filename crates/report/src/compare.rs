@@ -219,16 +219,13 @@ pub fn page(comparison: &Comparison) -> Result<String, ReportError> {
         |group: &&OptimizerGroup| group.evaluations_to_target.median.unwrap_or(f64::INFINITY);
     let mut groups: Vec<&OptimizerGroup> = groups.iter().collect();
     groups.sort_by(|a, b| late(a).total_cmp(&late(b)));
-    let finding = groups.first().filter(|first| late(first).is_finite()).map_or(
-        format!("No optimizer reaches {target_mm:.1} mm in half of its studies"),
-        |first| {
-            let median = number(first.evaluations_to_target.median, "–");
-            format!(
-                "{} reaches {target_mm:.1} mm first: after {median} evaluations",
-                first.optimizer
-            )
-        },
-    );
+    let finding = match groups.first().filter(|first| late(first).is_finite()) {
+        None => format!("No optimizer reaches {target_mm:.1} mm in half of its studies"),
+        Some(first) => {
+            let (name, median) = (&first.optimizer, late(first));
+            format!("{name} reaches {target_mm:.1} mm first: after {median:.1} evaluations")
+        }
+    };
     let rows = groups.iter().map(|group| group.row("–").to_vec());
     let convergence = render("the comparison", PLOT, |area| draw(area, comparison, ""))?;
     let caption = "Best so far: the median as a line, the quartiles as a band.";

@@ -25,10 +25,7 @@ pub(super) fn section(record: &StudyRecord, size: (u32, u32)) -> Result<Markup, 
             "Value of each evaluation, and the best of the search so far. Values are multiples of 0.1 mm."
         }
         Some(_) => "Value of each evaluation, and the best of the search so far.",
-        None => {
-            "Hypervolume of the front after each evaluation, from the reference stated with the \
-             front."
-        }
+        None => "Hypervolume of the front after each evaluation; its reference is given there.",
     };
     let settled = record.settled.then(|| format!(" Settled {}.", settled(record)));
     let note = note(record).map(|note| format!(" {note}"));
@@ -116,18 +113,13 @@ fn draw(area: &Area<'_>, record: &StudyRecord) -> DrawResult {
     )];
     if objectives.single().is_some() {
         let feasible = |found: &Recorded| found.feasible().is_some();
+        let raced = filtered(&|found| found.raced());
+        let each = filtered(&|found| !found.raced() && feasible(found));
+        let violating = filtered(&|found| !found.raced() && !feasible(found));
         series.extend([
-            (filtered(&|found| found.raced()), PointMark::ring(BLUE, 3, 1), "at most (raced)"),
-            (
-                filtered(&|found| !found.raced() && feasible(found)),
-                PointMark::dot(BLUE, 3),
-                "each evaluation",
-            ),
-            (
-                filtered(&|found| !found.raced() && !feasible(found)),
-                PointMark::ring(MUTED, 3, 1),
-                "violates a constraint",
-            ),
+            (raced, PointMark::ring(BLUE, 3, 1), "at most (raced)"),
+            (each, PointMark::dot(BLUE, 3), "each evaluation"),
+            (violating, PointMark::ring(MUTED, 3, 1), "violates a constraint"),
             (confirmed, PointMark::disc(GREEN, 5), "confirmed"),
         ]);
     }

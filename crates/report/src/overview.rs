@@ -47,8 +47,6 @@ pub(super) fn screen(answer: &Answer, files: &PageFiles) -> Markup {
             }
         }
         div.next { h2 { "Next step: " (why) } pre { code { (command) } } }
-        // Below, so that the next step is on the first screen.
-        @if let Some((_, text)) = lines::region(answer) { p.muted { "Ties: " (text) "." } }
     }
 }
 

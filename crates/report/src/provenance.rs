@@ -55,28 +55,31 @@ pub(super) fn section(answer: &Answer, model: &Model) -> Markup {
 fn reading(answer: &Answer, model: &Model) -> Vec<String> {
     let goals = answer.record.config.goals();
     let robust = goals.needs(Measure::RobustRange);
-    let mut texts = vec![
+    let mut texts: Vec<String> = [
         "The ends of a window lie on a 0.1 mm grid and the next step does not insert, so the true \
-         range is up to 0.2 mm wider."
-            .to_owned(),
+         range is up to 0.2 mm wider.",
         "The window search goes outward in steps of 0.5 mm and bisects before the first failure, so it can step over \
-         a gap: before you print a design that was not walked, run optimize evaluate --walk."
-            .to_owned(),
-        stiffness_note(model, robust),
-    ];
+         a gap: before you print a design that was not walked, run optimize evaluate --walk.",
+    ]
+    .map(str::to_owned)
+    .into();
+    texts.push(stiffness_note(model, robust));
     let draws = "Success rate and robust range hold for the assumed errors, not for your cell; all \
                  designs are evaluated with the same draws.";
     texts.extend(goals.needs_draws().then(|| draws.to_owned()));
     let parameters = &answer.record.config.space.parameters;
-    texts.push(match parameters.iter().any(|parameter| parameter.key == RCC_KEY) {
-        true => "The finger's remote centre is a parameter of the design here; whether a finger with this \
+    let centre = match parameters.iter().any(|parameter| parameter.key == RCC_KEY) {
+        true => {
+            "The finger's remote centre is a parameter of the design here; whether a finger with this \
                  infill and this centre can be made was not checked."
-            .to_owned(),
-        false => "The finger's remote centre is given by the task file, at one distance or along a \
+        }
+        false => {
+            "The finger's remote centre is given by the task file, at one distance or along a \
                   straight line over the infill direction. On a printed finger it moves with the infill; how \
                   far was not measured."
-            .to_owned(),
-    });
+        }
+    };
+    texts.push(centre.to_owned());
     texts
 }
 

@@ -72,12 +72,10 @@ pub fn text(found: &SensitivityResult) -> String {
         [short(&factor.name).to_owned(), total, of_total, first, of_first]
     });
     let table = text_table(1, head, rows);
-    let counts = [
-        (found.nominal_start_fails, "fail at the nominal start"),
-        (found.diverged, "diverge there"),
-    ];
+    let counts = [(found.nominal_start_fails, "fail"), (found.diverged, "diverge")];
     let zeros = counts.iter().filter(|(count, _)| *count > 0);
-    let zeros = zeros.map(|(count, what)| format!("; {count} {what} and count as 0"));
+    let zeros =
+        zeros.map(|(count, what)| format!("; {count} {what} at the nominal start and count as 0"));
     format!(
         "{} of {}: inputs by influence\n{table}\
          total: share of the variance that remains if all others are fixed (total index)\n\

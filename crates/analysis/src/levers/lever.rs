@@ -121,42 +121,20 @@ impl Levers {
         (!texts.is_empty()).then(|| texts.join(", "))
     }
 
-    /// Summarises the most effective change besides the infill in one sentence; effects below 0.3 mm are
-    /// omitted.
+    /// Names the change besides the infill that widens the window most, in one sentence; effects below 0.3 mm are omitted.
     pub fn sentence(&self) -> String {
         let by = |lever: &Lever, end: usize| {
             difference_mm([self.base.range_mm, lever.ends[end].unwrap_or(0.0)])
         };
         let of = |lever| [0, 1].map(|end| (by(lever, end), lever, end));
-        let ends = || self.levers.iter().flat_map(of);
         // The first of equal effects.
-        let most = |sign: f64| {
-            let best = ends().reduce(|a, b| if sign * b.0 > sign * a.0 { b } else { a });
-            best.filter(|(by, ..)| is_relevant(sign * by))
-        };
+        let most = self.levers.iter().flat_map(of).reduce(|a, b| if b.0 > a.0 { b } else { a });
         let task = &self.task;
-        match (most(1.0), most(-1.0)) {
-            (Some((by, lever, end)), _) => {
-                let more = match self.is_in_codesign(lever) {
-                    true => "; --space codesign searches it",
-                    false => "",
-                };
-                format!("{} widens {task} by {by:.1} mm{more}.", lever.step(end))
-            }
-            (None, Some((by, lever, end))) => format!(
-                "Alone, nothing widens {task} by {INDIFFERENCE_MM} mm, and {} narrows it by {:.1} mm. {TUNE}",
-                lever.step(end),
-                -by
-            ),
-            (None, None) if is_relevant(difference_mm(self.infill)) => {
-                format!(
-                    "Alone, nothing but the infill moves {task} by {INDIFFERENCE_MM} mm. {TUNE}"
-                )
-            }
-            (None, None) => {
-                format!("Alone, nothing tried moves {task} by {INDIFFERENCE_MM} mm. {TUNE}")
-            }
-        }
+        let Some((by, lever, end)) = most.filter(|(by, ..)| is_relevant(*by)) else {
+            return format!("Alone, nothing tried widens {task} by {INDIFFERENCE_MM} mm. {TUNE}");
+        };
+        let more = if self.is_in_codesign(lever) { "; --space codesign searches it" } else { "" };
+        format!("{} widens {task} by {by:.1} mm{more}.", lever.step(end))
     }
 }
 

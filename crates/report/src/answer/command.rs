@@ -78,24 +78,19 @@ pub fn next(answer: &Answer, dir: &Path) -> (String, &'static str) {
         }
         (verdict, trust) => {
             let mut setup = inputs.changed_setup();
-            let (file, why) = match (verdict, trust) {
-                (Verdict::MeasuredBefore { .. }, _) => {
-                    (inputs.measurements(), "check whether printing another finger is worth it")
-                }
-                (_, Trust::Calibrated { .. }) => {
-                    (inputs.measurements(), "choose the prints with the largest expected gain")
-                }
-                (_, Trust::Published { .. }) => {
-                    // Another space may not contain the published fingers.
-                    setup.retain(|word| !word.starts_with("--space "));
-                    let why = "choose the first prints from measurements as well";
-                    (MEASUREMENTS[0].name.to_owned(), why)
-                }
-                (_, Trust::Simulated { .. }) => (
-                    "bench.csv".to_owned(),
-                    "choose the first prints; optimize measure add takes their ranges",
-                ),
+            let file = match trust {
+                Trust::Calibrated { .. } => inputs.measurements(),
+                Trust::Published { .. } => MEASUREMENTS[0].name.to_owned(),
+                Trust::Simulated { .. } => "bench.csv".to_owned(),
             };
+            let why = match (verdict, trust) {
+                (Verdict::MeasuredBefore { .. }, _) => "check whether another print is worth it",
+                (_, Trust::Calibrated { .. }) => "choose the prints with the largest expected gain",
+                (_, Trust::Published { .. }) => "choose the first prints from measurements as well",
+                (_, Trust::Simulated { .. }) => "choose prints; measure add takes their ranges",
+            };
+            // Another space may not contain the published fingers.
+            setup.retain(|word| file != MEASUREMENTS[0].name || !word.starts_with("--space "));
             let options = format!("--task {task} --measurements {file} --count {PRINTS}");
             setup.insert(0, format!("optimize next {options}"));
             (setup.join(" "), why)

@@ -65,14 +65,12 @@ pub fn measured(answer: &Answer) -> Vec<Line> {
             format!("the model ranks {fingers} fingers {order} (Spearman {spearman:+.2})");
         line("measured", format!("{best}{on} ({source} {model}); {ranking}{advice}"))
     };
-    if answer.verdict.finger().is_none() {
-        return Vec::new();
-    }
-    if answer.record.on_bench.is_none() {
-        return answer.rank_correlations.iter().map(compared).collect();
-    }
     let widest = answer.measured.iter().max_by(|(_, a), (_, b)| a.total_cmp(b));
-    widest.map(|(design, mm)| line("measured", best(design, *mm))).into_iter().collect()
+    match (answer.verdict.finger(), &answer.record.on_bench) {
+        (None, _) => Vec::new(),
+        (_, None) => answer.rank_correlations.iter().map(compared).collect(),
+        (_, Some(_)) => widest.iter().map(|(of, mm)| line("measured", best(of, *mm))).collect(),
+    }
 }
 
 /// Returns the recommended design; `None` if measurements were used, for a Pareto front, or without a finger to print.
@@ -186,11 +184,6 @@ pub fn searched(answer: &Answer) -> String {
     format!("{task} with {method}: {evaluated}; mating force {}", forces.join(", "))
 }
 
-/// Returns the ties of the finger to print; `None` if measurements were used, for a Pareto front, or without a finger.
-pub fn region(answer: &Answer) -> Option<Line> {
-    Some(tied(answer, simulated_finger(answer)?.ties.as_ref()?))
-}
-
 /// Returns the number of designs that tie with the recommended one, their parameters, and the losses of others among
 /// these parameters and of the nearest ones.
 pub fn tied(answer: &Answer, ties: &Ties) -> Line {
@@ -237,13 +230,10 @@ pub fn safe(ties: &Ties) -> Option<Line> {
 
 /// Returns the smallest and largest range of the designs that insert, and the number of the others.
 pub fn spread(answer: &Answer) -> Option<Line> {
-    let (spread, of) = (interval(answer.spread_mm?), answer.designs);
+    let spread = interval(answer.spread_mm?);
     let failing = answer.record.current().iter().filter(|design| !design.inserts_on_all()).count();
-    let others = match failing {
-        0 => format!(" over {of} designs"),
-        _ => format!("; {failing} of {of} designs fail at the start"),
-    };
-    Some(line("infill", format!("range {spread}{others}")))
+    let fails = if failing > 0 { format!("; {failing} fail at the start") } else { String::new() };
+    Some(line("infill", format!("range {spread} over {} designs{fails}", answer.designs)))
 }
 
 /// Returns the parameters of the finger to print that have the least or the largest value of the space; `None` if there
@@ -295,14 +285,9 @@ pub fn recommended(answer: &Answer, found: &Recommended) -> Vec<Line> {
         }));
     }
     lines.extend(stiffness(&found.design.stiffness));
-    if let Some((measure, _)) = found.objective.filter(|_| !answer.walked.is_empty()) {
-        let mut same = answer.record.current().iter().filter(|of| of.index == found.design.index);
-        let before = same.next().and_then(Recorded::value);
-        let before = before.filter(|before| Some(*before) != found.design.value());
-        let before = before
-            .map_or(String::new(), |before| format!("; {} in the search", measure.show(before)));
+    if !answer.walked.is_empty() {
         let designs = input::counted(answer.walked.len(), "design");
-        lines.push(line("walked", format!("step by step: {designs}{before}")));
+        lines.push(line("walked", format!("step by step: {designs}")));
     }
     if answer.record.on_bench.is_some() {
         lines.extend(simulated(answer, found));
@@ -312,9 +297,6 @@ pub fn recommended(answer: &Answer, found: &Recommended) -> Vec<Line> {
         line(&format!("  {reason}"), format!("{}: {value:.1} {unit}", evaluated(found)))
     }));
     lines.extend(raced(answer));
-    if answer.rank_correlations.is_empty() && answer.record.on_bench.is_none() {
-        lines.push(line("robot", "no measurements are known: print and measure the best few"));
-    }
     lines
 }
 

@@ -73,6 +73,7 @@ impl<'a> Answer<'a> {
         let (config, current) = (&record.config, record.current());
         let front = || Front { designs: record.front(), volume: volume(&config.goals(), current) };
         let walked = |walked: &'a Walked| (&walked.recorded, firm_range_mm(record, walked));
+        let correlation = |task| rank_correlation(config, task);
         let measured = match (&record.on_bench, &config.tasks[..]) {
             (Some(bench), _) => bench.ranges.clone(),
             (None, [task]) => trust::published(task).into_iter().map(|(found, _)| found).collect(),
@@ -91,9 +92,7 @@ impl<'a> Answer<'a> {
             spread_mm: record.spread_mm(),
             measured,
             force: None,
-            rank_correlations: (0..config.tasks.len())
-                .filter_map(|task| rank_correlation(record, task))
-                .collect(),
+            rank_correlations: config.tasks().filter_map(correlation).collect(),
         };
         answer.verdict = Verdict::of(&answer);
         answer.trust = Trust::of(record, answer.design_to_print());

@@ -9,6 +9,7 @@ pub type WrongUnit = [String; 2];
 fn mistaken(unit: &str) -> &'static [(&'static str, f64)] {
     match unit {
         " N" => &[("kN", 1000.0), ("grams-force", 9.81e-3)],
+        " kg" => &[("g", 0.001)],
         " mm/s" => &[("m/s", 1000.0)],
         _ => &[("metres", 1000.0), ("inches", 25.4), ("micrometres", 0.001), ("centimetres", 10.0)],
     }

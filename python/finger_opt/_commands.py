@@ -123,8 +123,8 @@ def evaluate(
         uncertainty: Also compute success rate and robust range under these errors: typical, or the path of
             a file.
         seed: Seed of the drawn errors; the same draws as in a study with this seed.
-        repeat: Repeat N times with friction varied within 10 %, start within 0.02 mm, and half the step in
-            every other one.
+        repeat: Repeat N times with friction varied within 10 %, start within 0.02 mm, half the step in
+            every other one, and a cell's numbers drawn.
         repeat_seed: Seed of the repeats.
         measurements: Also print the finger's measured ranges from this file: published, or a path.
 
@@ -194,8 +194,8 @@ def trial(
         stiffness_compliance: Stiffness in the compliance direction, N/mm: bypasses the surrogate.
         stiffness_assembly: Stiffness in the direction of assembly, N/mm: bypasses the surrogate.
         set: A number of the task or the finger, as in spaces/codesign.toml.
-        repeat: Repeat N times with friction varied within 10 %, start within 0.02 mm, and half the step in
-            every other one.
+        repeat: Repeat N times with friction varied within 10 %, start within 0.02 mm, half the step in
+            every other one, and a cell's numbers drawn.
         repeat_seed: Seed of the repeats.
         record: Record the trial: a page that plays it, or a table of every millisecond.
         plot: Draw force against depth.

@@ -314,6 +314,8 @@ impl Moves {
 fn success(task: &mut Task, plug: &ConvexBody, seat: &Seat, play: f64) {
     let upright = libm::atan(play / seat.depth) / DEG + UPRIGHT_DEG;
     let [least, most] = TILT_LIMIT_DEG;
+    // A shallow seat may let a plug that is mated by its shape tilt further.
+    let most = if task.success.mated.is_none() { most } else { f64::INFINITY };
     let tilt = upright.ceil().clamp(least, most) * DEG;
     // Of a tilted plug, the outer end of the stopping part comes down first.
     let wide = |[part, _]: [usize; 2]| width(extent(plug.parts[part].solid.corners(), 1));

@@ -42,8 +42,7 @@ pub struct Request {
     /// Seed of the search
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub seed: u64,
-    /// Largest force between plug and socket, N [default: limits.force_n of the task, at most 90 % of
-    /// the robot's stop force]
+    /// Largest force between plug and socket, N [default: limits.force_n of the task, or the robot's stop force]
     #[arg(long, value_name = "N", value_parser = positive)]
     pub max_force_n: Option<f64>,
     /// Largest speed of a phase, mm/s [default: limits.speed_mm_per_s of the task]

@@ -1,9 +1,9 @@
 //! Checks of the units of a task file: lengths in mm, angles in degrees, forces in N.
 
-use super::{Problem, TaskBodies, mm, part_key, widest_key};
+use super::{Problem, TaskBodies, part_key, widest_key};
 use crate::body::{longest_side, width};
 use crate::seat::section;
-use input::units::{DEG, MM};
+use input::units::{DEG, MM, mm};
 use input::wrong_unit::{self, WrongUnit, remedy};
 use insertion::task::Ending;
 use nalgebra::Vector3;

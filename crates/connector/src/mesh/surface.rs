@@ -50,6 +50,11 @@ impl Surface {
     pub fn triangles(&self) -> Vec<Triangle> {
         self.faces.iter().map(|face| face.map(|corner| self.points[corner])).collect()
     }
+
+    /// Returns the enclosed volume, m3.
+    pub fn volume(&self) -> f64 {
+        surface_moments(&self.points, &self.faces).0
+    }
 }
 
 /// Rounds a length to the grid.

@@ -57,15 +57,15 @@ pub struct Candidate {
 }
 
 impl<'a> Tuner<'a> {
-    /// Creates the tuner of a task with its limit of speed and the largest force that is acceptable for its connector
-    /// and the robot.
+    /// Creates the tuner of a task with its limits of force and speed, and with the robot's stop force unless the
+    /// task limits the force.
     pub fn new(task: &'a Task, robot: &'a Robot, engine: EngineKind, stop: &'a AtomicBool) -> Self {
         let finger = |design: Measurement| {
             Finger::new(design.compliance, design.assembly).with_model(&task.finger, 0.0)
         };
         let fingers = designs_by_rank([0, 5, 10]).map(finger);
         let others = designs_by_rank([2, 4, 8]).map(finger);
-        let force = Some(robot.acceptable_force(task.limits.force));
+        let force = task.limits.force.or(Some(robot.stop_force));
         let limits = Limits { force, ..task.limits };
         Tuner { task, robot, engine, fingers, others, limits, stop }
     }

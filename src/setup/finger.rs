@@ -108,9 +108,20 @@ pub struct ChosenFinger {
 }
 
 impl FingerRequest {
-    /// Returns the finger on the task of a setup.
+    /// Returns the finger on the task of a setup, and checks that its numbers are in the units of their keys.
     pub(crate) fn choose(&self, setup: &Setup) -> Result<ChosenFinger, Failure> {
-        self.choose_with(setup, &setup.evaluator)
+        let chosen = self.choose_with(setup, &setup.evaluator)?;
+        let of_space = setup.space.parameters.iter().find(|one| one.key == DIRECTION_KEY);
+        let direction = self.infill.direction.zip(of_space);
+        let radians =
+            direction.and_then(|(value, one)| wrong_unit::angle(value, FRAC_PI_2, one.step));
+        if let Some(radians) = radians {
+            return Err(Failure::usage(format!("--direction: {}", radians.join(" "))));
+        }
+        if !chosen.set.0.is_empty() {
+            check_units(&setup.only_task()?.task, &chosen.scenario.task)?;
+        }
+        Ok(chosen)
     }
 
     /// Returns the finger on the task of a setup, with the finger model and stiffness model of an evaluator.
@@ -155,9 +166,6 @@ impl FingerRequest {
             }
         };
         let scenario = evaluator.scenario(template, &design, stiffness).map_err(Failure::input)?;
-        if !set.0.is_empty() {
-            check_units(&template.task, &scenario.task)?;
-        }
         Ok(ChosenFinger {
             scenario,
             cell: evaluator.cell.clone(),
@@ -197,17 +205,12 @@ fn check_units(file: &Task, set: &Task) -> Result<(), Failure> {
     })
 }
 
-/// Checks that a value lies within the bounds of its key in the space, and that a direction is not in radians.
+/// Checks that a value lies within the bounds of its key in the space.
 fn check(setup: &Setup, flag: &str, key: &str, value: f64) -> Result<(), Failure> {
     let parameters = &setup.space.parameters;
     match parameters.iter().find(|parameter| parameter.key == key) {
         // NaN is outside.
-        Some(parameter) if (parameter.low..=parameter.high).contains(&value) => {
-            let radians = wrong_unit::angle(value, FRAC_PI_2, parameter.step);
-            radians.filter(|_| key == DIRECTION_KEY).map_or(Ok(()), |radians| {
-                Err(Failure::usage(format!("{flag}: {}", radians.join(" "))))
-            })
-        }
+        Some(parameter) if (parameter.low..=parameter.high).contains(&value) => Ok(()),
         Some(parameter) => Err(Failure::usage(format!(
             "{flag} {}: {key} must lie between {} and {} in the space `{}`",
             shown(value),

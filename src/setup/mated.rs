@@ -290,7 +290,7 @@ pub fn unit(
                 (
                     at,
                     format!(
-                        "read as {read}, the {body} is {long:.4} long; accepted: 3 to 300 mm, the size of connectors"
+                        "read as {read}, the {body} ({long:.4} long) is shorter than 3 mm or longer than 300 mm, the size of connectors"
                     ),
                 )
             }

@@ -55,7 +55,8 @@ impl Sweep {
         let one = |finger: &FingerRequest| {
             not_stopped(stop)?;
             let clock = Instant::now();
-            let chosen = finger.choose(setup)?;
+            // Values of a sweep are computed: small ones are meant.
+            let chosen = finger.choose_with(setup, &setup.evaluator)?;
             let (evaluation, _) =
                 evaluator.evaluate_scenario(&chosen.scenario, plan).map_err(Failure::input)?;
             let wall_s = clock.elapsed().as_secs_f64();

@@ -356,7 +356,9 @@ pub fn window(evaluation: &Evaluation) -> Vec<Line> {
 
 /// Returns the number of trials that a protective stop of the robot ended, in words; empty if there are none.
 fn stops(Evaluation { robot_stops, trials, .. }: &Evaluation) -> String {
-    let text = || format!("; robot stop in {robot_stops} of {trials} trials");
+    let text = || {
+        format!("; robot stop in {robot_stops} of {trials} trials: a plug seated by then counts")
+    };
     (*robot_stops > 0).then(text).unwrap_or_default()
 }
 

@@ -168,7 +168,7 @@ fn a_study_with_measurements_leads_with_the_finger_that_is_best_on_the_bench() {
     assert!(places[0].is_some() && places[0] < places[1], "{places:?}");
     assert!(!folder.read("b/report.html").contains("for the bench</h2>"));
     let plain = folder.study("b", 12, &["--task", "ket8", "--verbose"]);
-    plain.says_in_any_lines("model ranks 11 fingers wrongly (Spearman -0.62)");
+    plain.says_in_any_lines("model ranks 11 fingers opposite to the robot (Spearman -0.62)");
 }
 
 #[test]

@@ -404,8 +404,9 @@ fn a_plug_that_stops_early_is_refused() {
         let body = block([-3.5, 3.5], [-8.0, 8.0], [0.0, 12.0]);
         vec![body, key, block([-5.0, 5.0], [-9.5, 9.5], [12.0, 30.0])]
     };
-    let floor = block([-7.0, 7.0], [-12.0, 12.0], [-14.0, -12.0]);
-    let mut socket = frame([14.0, 24.0], [7.2, 16.2], [-12.0, 0.0]);
+    // The well is deeper than the plug, whose flange ends on its edge.
+    let floor = block([-7.0, 7.0], [-12.0, 12.0], [-32.0, -30.0]);
+    let mut socket = frame([14.0, 24.0], [7.2, 16.2], [-30.0, 0.0]);
     socket.push(floor);
     let refused = imported(&folder, "keyed", [plug(key(2.0)), socket.clone()]);
     let stops = "the plug stops after 2.00 of 12.00 mm, beside its seat";
@@ -413,7 +414,7 @@ fn a_plug_that_stops_early_is_refused() {
     assert!(!folder.dir("keyed.toml").exists());
     // The wall at +x begins at 3.6 mm, but for the slot.
     socket.retain(|[low, _]| low[0] < 3.0);
-    let z = [-12.0, 0.0];
+    let z = [-30.0, 0.0];
     socket.push(block([3.6, 7.0], [-8.1, -5.1], z));
     socket.push(block([3.6, 7.0], [-2.9, 8.1], z));
     socket.push(block([4.6, 7.0], [-5.1, -2.9], z));

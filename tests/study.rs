@@ -383,7 +383,7 @@ fn the_best_designs_are_walked_beside_the_journal() {
 fn the_order_on_the_bench_says_whose_it_is() {
     let studies = Studies::new();
     let paper = studies.study("paper", 4, &["--no-confirm", "--verbose"]);
-    paper.says(&["(model 6.8 mm)", "ranks 11 fingers wrongly (Spearman -0.07)"]);
+    paper.says(&["(model 6.8 mm)", "ranks 11 fingers no better than chance (Spearman -0.07)"]);
     for (name, other) in [("ribs", ["--finger-model", "computed"]), ("robot", ["--robot", "rigid"])]
     {
         let found = studies.study(name, 4, &[&other[..], &["--no-confirm", "--verbose"]].concat());

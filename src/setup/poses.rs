@@ -60,13 +60,16 @@ pub fn mate(
     };
     not_stopped(context.stop)?;
     let nowhere = |why: String| Failure::in_file(files.join(", "), why);
-    let MatingResult { mates: mut all, copies } = found.map_err(|error| {
+    let found = found.map_err(|error| {
         let fits = (error == MatingError::NoFit).then(|| mirrored_fit([plug, socket], context));
         nowhere(match fits.flatten() {
             Some((_, text)) => format!("the plug does not fit into the socket; {text}"),
             None => error.to_string(),
         })
-    })?;
+    });
+    // The mirrored plug may have been cancelled.
+    not_stopped(context.stop)?;
+    let MatingResult { mates: mut all, copies } = found?;
     if copies > 1 {
         findings.push(("symmetry", format!("the first of {copies} equal poses is taken")));
     }
@@ -87,10 +90,10 @@ pub fn mate(
     let taken = all.swap_remove(request.pose - 1);
     // An assembly and a depth are taken as they are given.
     if taken.missed_m > 0.0 && request.assembly.is_none() && request.depth_mm.is_none() {
-        let stops = stopped_early(&taken, [plug, socket], context).map_err(nowhere)?;
-        findings.push(("warning", stops));
+        let stops = stopped_early(&taken, [plug, socket], context);
+        not_stopped(context.stop)?;
+        findings.push(("warning", stops.map_err(nowhere)?));
     }
-    not_stopped(context.stop)?;
     Ok((taken, poses))
 }
 
@@ -118,7 +121,8 @@ fn stopped_early(
         Some((mm, text)) if mm > engaged => Err(format!("{stops}; {text}")),
         _ if missed > engaged => Err(format!(
             "{stops}: is a key on the wrong side, or a screw in the way? correct the file, select bodies with --plug-body, or \
-             confirm the depth with --depth-mm {engaged:.2}"
+             confirm the depth with --depth-mm {:.2}",
+            mate.depth_m() / MM
         )),
         _ => Ok(stops),
     }

@@ -84,7 +84,8 @@ impl Lever {
 }
 
 /// Start of the paths of parameters that a user sets; the others are uncertain.
-const OF_USER: [&str; 2] = ["task.strategy.", "task.grip."];
+const OF_USER: [&str; 4] =
+    ["task.strategy.", "task.grip.", "task.opening_chamfer", "finger.material."];
 /// Largest number of uncertain parameters that are named.
 const UNCERTAIN: usize = 2;
 /// Advice if no single lever widens the window.

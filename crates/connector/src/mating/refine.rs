@@ -304,15 +304,18 @@ impl Fine {
         overlap([&self.upper, &self.tight], self.cells(pose), pose.z as f32 + LEVEL)
     }
 
-    /// Returns the further depth at which most walls would face one another if nothing stopped the plug, m: 0 if those at
+    /// Returns the least further depth at which most walls would face one another if nothing stopped the plug, m: 0 if those at
     /// its seat are [`SIMILAR`], as they are unless a key or a screw is in the way.
     pub fn missed(&self, pose: &Pose) -> f64 {
         let (faces, at) = (self.faces(), self.cells(pose));
         let walls = |by: f64| score(&self.sides.facing(&faces, at, (pose.z - by) as f32 + LEVEL));
         let most = pose.z + self.heights[1][1] - self.heights[0][0];
         let lower = (1..).map(|i| f64::from(i) * DROP).take_while(|by| *by < most);
-        let best = lower.map(|by| (walls(by), by)).max_by(|a, b| a.0.total_cmp(&b.0));
-        best.filter(|(area, _)| SIMILAR * area > walls(0.0)).map_or(0.0, |(_, by)| by)
+        let areas: Vec<(f64, f64)> = lower.map(|by| (walls(by), by)).collect();
+        let most = areas.iter().fold(0.0, |most, (area, _)| area.max(most));
+        // In a deep socket the area stays the same below the depth at which all walls face one another.
+        let first = areas.into_iter().find(|(area, _)| *area >= 0.99 * most);
+        first.filter(|_| SIMILAR * most > walls(0.0)).map_or(0.0, |(_, by)| by)
     }
 
     /// Returns the width of the region that both parts fill at a pose, m.

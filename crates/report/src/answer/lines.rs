@@ -54,16 +54,17 @@ pub fn measured(answer: &Answer) -> Vec<Line> {
     let compared = |found: &RankCorrelation| {
         let RankCorrelation { spearman, fingers, source, best: finger, .. } = found;
         // A random order of n fingers has a rank correlation of mean 0 and variance 1 / (n - 1), taken as
-        // normal: it exceeds this bound in less than 5 % of cases.
-        let (order, advice) = match spearman * (*fingers as f64 - 1.0).sqrt() > 1.645 {
-            true => ("like the robot", ""),
-            false => ("wrongly", ": optimize next"),
+        // normal: its magnitude exceeds this bound in less than 10 % of cases.
+        let order = match spearman * (*fingers as f64 - 1.0).sqrt() {
+            z if z > 1.645 => "like the robot",
+            z if z < -1.645 => "opposite to the robot",
+            _ => "no better than chance",
         };
         let on = words::on(&answer.record.config, &found.task);
         let (best, model) = (best(&finger.design, finger.measured_mm), mm(finger.simulated_mm));
         let ranking =
             format!("the model ranks {fingers} fingers {order} (Spearman {spearman:+.2})");
-        line("measured", format!("{best}{on} ({source} {model}); {ranking}{advice}"))
+        line("measured", format!("{best}{on} ({source} {model}); {ranking}"))
     };
     let widest = answer.measured.iter().max_by(|(_, a), (_, b)| a.total_cmp(b));
     match (answer.verdict.finger(), &answer.record.on_bench) {
@@ -357,7 +358,9 @@ pub fn window(evaluation: &Evaluation) -> Vec<Line> {
 /// Returns the number of trials that a protective stop of the robot ended, in words; empty if there are none.
 fn stops(Evaluation { robot_stops, trials, .. }: &Evaluation) -> String {
     let text = || {
-        format!("; robot stop in {robot_stops} of {trials} trials: a plug seated by then counts")
+        format!(
+            "; robot stop in {robot_stops} of {trials} trials: a plug seated by then is inserted"
+        )
     };
     (*robot_stops > 0).then(text).unwrap_or_default()
 }

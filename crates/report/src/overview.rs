@@ -27,10 +27,8 @@ pub(super) fn screen(answer: &Answer, files: &PageFiles) -> Markup {
             h1 { (answer.headline()) }
             p.lead {
                 (explained(&expectation(answer))) ". "
-                @if let Some(text) = uncertainty { "Uncertain: " (text) ". " }
                 @if answer.verdict.finger().is_some() { span.trust { (answer.trust.label()) } }
             }
-            @for (_, text) in lines::measured(answer) { p.muted { "Measured: " (text) "." } }
             // With measurements the finger is chosen by predictions for the bench.
             @if let Some((_, text)) = lines::widest(answer).filter(|_| answer.record.on_bench.is_none()) {
                 p.muted { "Widest in the search: " (explained(&text)) "." }
@@ -47,6 +45,9 @@ pub(super) fn screen(answer: &Answer, files: &PageFiles) -> Markup {
             }
         }
         div.next { h2 { "Next step: " (why) } pre { code { (command) } } }
+        // Below, so that the next step is on the first screen.
+        @for (_, text) in lines::measured(answer) { p.muted { "Measured: " (text) "." } }
+        @if let Some(text) = uncertainty { p.muted { "Uncertain: " (text) "." } }
     }
 }
 

@@ -314,7 +314,7 @@ impl Fine {
         let areas: Vec<(f64, f64)> = lower.map(|by| (walls(by), by)).collect();
         let most = areas.iter().fold(0.0, |most, (area, _)| area.max(most));
         // In a deep socket the area stays the same below the depth at which all walls face one another.
-        let first = areas.into_iter().find(|(area, _)| *area >= 0.9999 * most);
+        let first = areas.into_iter().find(|(area, _)| *area >= 0.995 * most);
         first.filter(|_| SIMILAR * most > walls(0.0)).map_or(0.0, |(_, by)| by)
     }
 

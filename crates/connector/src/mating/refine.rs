@@ -304,8 +304,8 @@ impl Fine {
         overlap([&self.upper, &self.tight], self.cells(pose), pose.z as f32 + LEVEL)
     }
 
-    /// Returns the least further depth at which most walls would face one another if nothing stopped the plug, m: 0 if those at
-    /// its seat are [`SIMILAR`], as they are unless a key or a screw is in the way.
+    /// Returns the least further depth at which most walls would face one another if nothing stopped the plug, m: 0 if
+    /// those at its seat are [`SIMILAR`], as they are unless a key or a screw is in the way.
     pub fn missed(&self, pose: &Pose) -> f64 {
         let (faces, at) = (self.faces(), self.cells(pose));
         let walls = |by: f64| score(&self.sides.facing(&faces, at, (pose.z - by) as f32 + LEVEL));

@@ -26,6 +26,29 @@ pub struct RankCorrelation {
     pub best: ComparedFinger,
 }
 
+/// Relation of the simulated order of the fingers to the measured one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Order {
+    /// The same, by more than chance.
+    Like,
+    /// Neither the same nor the opposite by more than chance.
+    Chance,
+    /// The opposite, by more than chance.
+    Opposite,
+}
+
+impl RankCorrelation {
+    /// Returns the relation of the orders. A random order of n fingers has a rank correlation of mean 0 and variance
+    /// 1 / (n - 1), taken as normal: its magnitude exceeds the bound in less than 10 % of cases.
+    pub fn order(&self) -> Order {
+        match self.spearman * (self.fingers as f64 - 1.0).sqrt() {
+            z if z > 1.645 => Order::Like,
+            z if z < -1.645 => Order::Opposite,
+            _ => Order::Chance,
+        }
+    }
+}
+
 /// Finger with a simulated and a measured range.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ComparedFinger {

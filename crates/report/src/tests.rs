@@ -187,6 +187,7 @@ fn a_measured_design_shows_its_range_on_a_robot() {
     assert!(html.contains("<td>4.1 mm</td>"));
     assert!(html.contains("Measured: best 30 % infill at 20°: 6.1 mm (model"));
     assert!(html.contains("ranks 11 fingers no better than chance (Spearman -0.07)"));
+    assert!(html.contains("<h1>Best in simulation, not supported by measurements: "));
     let (_, ranges) = html.split_once("Ranges without their ends").expect("ranges below the scale");
     let (name, bar) = ranges.split_once("<div class=\"track range\">").expect("a bar");
     let (bar, _) = bar.split_once("</div>").expect("its end");

@@ -3,7 +3,7 @@
 use super::words::{self, ends_mm, evaluated, interval, mm, span};
 use super::{Answer, Front, OnTask, Recommended, Spread, Ties, Verdict};
 use ask_tell::statistics::mean;
-use calibration::rank_correlation::RankCorrelation;
+use calibration::rank_correlation::{Order, RankCorrelation};
 use insertion::evaluation::objective::Measure;
 use insertion::evaluation::robustness::firm::REPEATS;
 use insertion::evaluation::{Evaluation, grid_mm};
@@ -53,12 +53,10 @@ pub fn measured(answer: &Answer) -> Vec<Line> {
         |design: &Design, mm: f64| format!("best {}: {}", words::design(design), self::mm(mm));
     let compared = |found: &RankCorrelation| {
         let RankCorrelation { spearman, fingers, source, best: finger, .. } = found;
-        // A random order of n fingers has a rank correlation of mean 0 and variance 1 / (n - 1), taken as
-        // normal: its magnitude exceeds this bound in less than 10 % of cases.
-        let order = match spearman * (*fingers as f64 - 1.0).sqrt() {
-            z if z > 1.645 => "like the robot",
-            z if z < -1.645 => "opposite to the robot",
-            _ => "no better than chance",
+        let order = match found.order() {
+            Order::Like => "like the robot",
+            Order::Chance => "no better than chance",
+            Order::Opposite => "opposite to the robot",
         };
         let on = words::on(&answer.record.config, &found.task);
         let (best, model) = (best(&finger.design, finger.measured_mm), mm(finger.simulated_mm));

@@ -12,7 +12,7 @@ mod trust;
 mod verdict;
 pub mod words;
 
-use calibration::rank_correlation::{RankCorrelation, rank_correlation};
+use calibration::rank_correlation::{Order, RankCorrelation, rank_correlation};
 use insertion::evaluation::Evaluation;
 use insertion::space::Design;
 use study::{Recorded, StudyRecord, Volume, Walked, volume};
@@ -105,7 +105,14 @@ impl<'a> Answer<'a> {
     pub fn headline(&self) -> String {
         let StudyRecord { config, evaluations, .. } = self.record;
         let done = || format!(" (unfinished, after {})", config.counted(evaluations.len()));
-        self.verdict.headline() + &self.record.unfinished().then(done).unwrap_or_default()
+        self.verdict.headline(self.contradicted()) + &self.record.unfinished().then(done).unwrap_or_default()
+    }
+
+    /// Returns whether the answer is simulated and the simulation ranks the published fingers of no task like the robot.
+    fn contradicted(&self) -> bool {
+        let unlike = |found: &RankCorrelation| found.order() != Order::Like;
+        let tasks = &self.rank_correlations;
+        self.record.on_bench.is_none() && !tasks.is_empty() && tasks.iter().all(unlike)
     }
 
     /// Returns the evaluation of the design to print according to simulation alone; `None` if there is none.

@@ -111,9 +111,16 @@ impl<'a> Verdict<'a> {
         }
     }
 
-    /// Returns the first sentence of the answer.
-    pub fn headline(&self) -> String {
+    /// Returns the first sentence of the answer. If measurements contradict the simulation, it recommends no print.
+    pub(super) fn headline(&self, contradicted: bool) -> String {
+        const UNSUPPORTED: &str = "in simulation, not supported by measurements";
         match self {
+            Verdict::Print(design) if contradicted => {
+                format!("Best {UNSUPPORTED}: {}", finger(design))
+            }
+            Verdict::Any { safe, of } if contradicted => {
+                format!("{of} fingers tie {UNSUPPORTED}: {}", finger(safe))
+            }
             Verdict::Print(design) => format!("Print the finger with {}", finger(design)),
             Verdict::Any { safe, of } => {
                 format!("Any of {of} fingers will do; by default print {}", finger(safe))

@@ -322,7 +322,7 @@ fn text(done: &TunedTask<'_>) -> String {
 
 /// Returns speed and largest force of the push, before and after tuning, as text.
 fn push_text(TunedTask { tuner, tuned, .. }: &TunedTask<'_>, after_n: f64) -> String {
-    let Tuner { task, limits, .. } = tuner;
+    let Tuner { task, robot, limits, .. } = tuner;
     let [old, new] = [&task.strategy, &tuned.best().tried.strategy].map(push_speed_mm_per_s);
     let before = match tuned.steps[0].tried.force_n {
         0.0 => "none".to_owned(),
@@ -330,7 +330,12 @@ fn push_text(TunedTask { tuner, tuned, .. }: &TunedTask<'_>, after_n: f64) -> St
     };
     let limit = limits.force.map_or(String::new(), |limit| format!(" (limit {limit:.0} N)"));
     let limited = limits.speed.map_or(String::new(), |v| format!(" (limit {:.0} mm/s)", v / MM));
-    format!("{old:.0} -> {new:.0} mm/s{limited}, largest force {before} -> {after_n:.0} N{limit}")
+    let accepted_n = robot.acceptable_force(task.limits.force).floor();
+    let above = format!("; a study accepts {accepted_n:.0} N (--max-force-n {accepted_n:.0})");
+    let above = if after_n > accepted_n { above } else { String::new() };
+    format!(
+        "{old:.0} -> {new:.0} mm/s{limited}, largest force {before} -> {after_n:.0} N{limit}{above}"
+    )
 }
 
 /// Returns a line for each stage with its best strategy; for the stage of the connector families, one per family.

@@ -105,7 +105,8 @@ impl<'a> Answer<'a> {
     pub fn headline(&self) -> String {
         let StudyRecord { config, evaluations, .. } = self.record;
         let done = || format!(" (unfinished, after {})", config.counted(evaluations.len()));
-        self.verdict.headline(self.contradicted()) + &self.record.unfinished().then(done).unwrap_or_default()
+        self.verdict.headline(self.contradicted())
+            + &self.record.unfinished().then(done).unwrap_or_default()
     }
 
     /// Returns whether the answer is simulated and the simulation ranks the published fingers of no task like the robot.

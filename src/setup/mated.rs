@@ -1,7 +1,7 @@
 //! Creation of a task from the meshes of a plug and its socket, by their mated pose.
 
 use super::bodies::{PairRequest, Parts};
-use super::poses::{MatedPose, along_of, depth, jaws_of, mate};
+use super::poses::{MatedPose, depth, insert_along, jaws_of, mate};
 use crate::context::Context;
 use crate::failure::Failure;
 use connector::body::{extent, longest_side, width};
@@ -88,8 +88,8 @@ pub fn mated(
     let jaws: Vec<Vector3<f64>> = across.iter().filter(chosen).copied().collect();
     if jaws.is_empty() {
         let [a, b] = across.map(|way| value(jaws_of(&way)));
-        let problem =
-            format!("--jaws: the plug goes in along {}; give {a} or {b}", value(along_of(&-out)));
+        let along = value(insert_along(&mate));
+        let problem = format!("--jaws: the plug goes in along {along}; give {a} or {b}");
         return Err(Failure::usage(problem));
     }
     let long = width(extent(plug.iter().flatten().map(|p| mate.pose * p), out.iamax()));
@@ -122,7 +122,7 @@ pub fn mated(
     check_drawing(files, &made, seat, &request.out().with_extension("place.svg"))?;
     findings.extend(described(&mate, [long, depth], &made, request.body));
     findings.extend(parts.finding);
-    let (along, jaws) = (along_of(&-out), jaws_of(&made.jaws));
+    let (along, jaws) = (insert_along(&mate), jaws_of(&made.jaws));
     let like = like.map(|like| Family::Like(Box::new(like.clone())));
     let like = like.and_then(|family| Some((family.strategy_for(&made.task)?, family.name())));
     let mut strategy = "upright sweep".to_owned();

@@ -151,6 +151,7 @@ fn check_drawing(
     let (file, problem) = match (made.deviation, made.difference) {
         (Some((body, off)), _) => {
             let how = match off.out {
+                Some(f64::INFINITY) => "protrude from a drawing without faces".to_owned(),
                 Some(far) => format!("protrude {:.3} mm from the drawing", far / MM),
                 None => "lack a face of the drawing".to_owned(),
             };

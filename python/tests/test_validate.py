@@ -19,6 +19,6 @@ import pytest
 def test_ranges_are_compared_by_error_and_rank(ours, bench, expected, monkeypatch):
     monkeypatch.syspath_prepend(Path(__file__).parents[2] / "scripts")
     validate = importlib.import_module("validate")
-    ends = dict.fromkeys(["failure_negative", "failure_positive", "bench_failure_negative", "bench_failure_positive"], "")
+    ends = {source + end: "" for source in ("", "bench_") for end in ("failure_negative", "failure_positive")}
     table = [{"range_mm": str(a or ""), "bench_range_mm": str(b or ""), **ends} for a, b in zip(ours, bench)]
     assert validate.agreement(table, "", "bench_") == expected

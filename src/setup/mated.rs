@@ -287,13 +287,9 @@ pub fn unit(
             [plug, _] => {
                 let at = usize::from(plug.is_some());
                 let read = given.map_or("mm, m or in".to_owned(), value);
-                let (body, long) = (BODIES[at], longest[at]);
-                (
-                    at,
-                    format!(
-                        "read as {read}, the {body} ({long:.4} long) is shorter than 3 mm or longer than 300 mm, the size of connectors"
-                    ),
-                )
+                let [least, most] = SIZES.map(|side| side / MM);
+                let is = format!("the {} is {:.4} {read} long", BODIES[at], longest[at]);
+                (at, format!("{is}; connectors are {least:.0} to {most:.0} mm long"))
             }
         };
         return Err(Failure::in_file(files[at], problem));

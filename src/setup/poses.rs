@@ -89,9 +89,9 @@ pub fn mate(
         findings.push(("poses", format!("{} is taken (--pose): {list}", request.pose)));
     }
     let taken = all.swap_remove(request.pose - 1);
-    // An assembly and a depth are taken as they are given.
-    if taken.missed_m > 0.0 && request.assembly.is_none() && request.depth_mm.is_none() {
-        let stops = stopped_early(&taken, [plug, socket], context);
+    if taken.missed_m > 0.0 {
+        let given = request.assembly.is_some() || request.depth_mm.is_some();
+        let stops = stopped_early(&taken, [plug, socket], given, context);
         not_stopped(context.stop)?;
         findings.push(("warning", stops.map_err(nowhere)?));
     }
@@ -112,18 +112,22 @@ fn mirrored_fit(
     Some((mm, format!("mirrored, it engages over {mm:.2} mm: mirror one of the two")))
 }
 
-/// Returns a warning of a plug that stops before its seat.
+/// Returns a warning of a plug that stops before its seat; `given` is whether an assembly or the depth is given.
 ///
 /// # Errors
-/// If a mirrored plug engages deeper, or if the plug stops before half of its depth.
+/// Unless it is given, if a mirrored plug engages deeper, or if the plug stops before half of its depth.
 fn stopped_early(
     mate: &Mate,
     parts: [&[Triangle]; 2],
+    given: bool,
     context: &Context<'_>,
 ) -> Result<String, String> {
     let [engaged, missed] = [mate.engaged_m, mate.missed_m].map(|depth| depth / MM);
     let possible = engaged + missed;
     let stops = format!("the plug stops after {engaged:.2} of {possible:.2} mm, beside its seat");
+    if given {
+        return Ok(stops);
+    }
     match mirrored_fit(parts, Some(insert_along(mate)), context) {
         Some((mm, text)) if mm > engaged => Err(format!("{stops}; {text}")),
         _ if missed > engaged => Err(format!(

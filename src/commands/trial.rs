@@ -90,8 +90,8 @@ pub struct Done {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub repeats: Option<BTreeMap<String, usize>>,
     /// Number of draws of the cell's numbers that are impossible on this task and left out, with `--repeat`.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub impossible_draws: Option<usize>,
+    #[serde(rename = "impossible_draws", skip_serializing_if = "Option::is_none")]
+    pub impossible: Option<usize>,
     /// Time series from the start of the search, with `--every-s`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub series: Option<Value>,
@@ -145,7 +145,7 @@ impl Request {
         let outcomes = |repeat: RepeatRequest| {
             repeat.run(&setup, scenario, taught, context, |repeats| repeats.outcomes(offset))
         };
-        let (outcomes, impossible_draws) = self.repeat.map(outcomes).transpose()?.unzip();
+        let (outcomes, impossible) = self.repeat.map(outcomes).transpose()?.unzip();
         let repeats = outcomes.map(|outcomes| {
             let mut counts = BTreeMap::new();
             for outcome in outcomes {
@@ -159,16 +159,7 @@ impl Request {
         });
         let series = self.every_s.map(|_| series(&samples));
         let taught_start_mm = taught.map(grid_mm);
-        Ok(Done {
-            chosen,
-            offset_mm,
-            trial,
-            taught_start_mm,
-            repeats,
-            impossible_draws,
-            series,
-            page,
-        })
+        Ok(Done { chosen, offset_mm, trial, taught_start_mm, repeats, impossible, series, page })
     }
 }
 
@@ -180,7 +171,7 @@ impl Done {
             format!("repeats       {}\n", counts.collect::<Vec<_>>().join(", "))
         });
         let start = layout::lines(lines::taught(self.taught_start_mm));
-        let impossible = impossible_text(self.impossible_draws.unwrap_or(0));
+        let impossible = impossible_text(self.impossible.unwrap_or(0));
         format!("{}{start}{}{repeats}{impossible}", self.chosen.text(), text(&self.trial))
     }
 }

@@ -254,8 +254,8 @@ impl StudyRecord {
         let on_bench = provenance.and_then(|provenance| BenchPrediction::read(dir, provenance));
         let current = evaluations.get(first_current(&segments) as usize..).unwrap_or_default();
         let file = ConfirmationFile::read(dir, provenance);
-        let settled = file.as_ref().is_some_and(|file| file.settled(evaluations.len()));
-        let settled = config.settles && settled;
+        let settled =
+            config.settles && file.as_ref().is_some_and(|file| file.settled(evaluations.len()));
         let file = file.filter(|file| file.complete);
         let confirms = config.optimizes_windows() && !config.conclusion.no_confirm;
         let confirmation_due = confirms && file.is_none();

@@ -121,4 +121,5 @@ def main(program, folder, *options):
     (folder / "accuracy.md").write_text(text)
 
 
-main(*sys.argv[1:])
+if __name__ == "__main__":
+    main(*sys.argv[1:])

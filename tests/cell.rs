@@ -149,4 +149,11 @@ fn each_draw_under_a_cell_is_another_cell() {
         to.unwrap() - from.unwrap()
     };
     assert!(firm_mm(0.4) < firm_mm(0.0) - 0.15, "{} and {}", firm_mm(0.4), firm_mm(0.0));
+    // The faces are 12.4 mm apart.
+    let numbers = "value = 0.0\nsd = 20.0\nlow = -5.0\nhigh = 30.0";
+    let faces = row("faces", "task.grip.faces_y_mm.0", "shift", numbers, false);
+    let repeats = format!("{line} --repeat 12 --cell {}", folder.file("cell.toml", cell(&faces)));
+    let bands = optimize_line(&repeats).json()["bands"].take();
+    assert!((1..12).contains(&bands["impossible_draws"].as_u64().unwrap()), "{bands}");
+    optimize_line(&repeats.replace(" --json", "")).says(&["impossible on this task"]);
 }

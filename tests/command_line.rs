@@ -413,6 +413,7 @@ fn a_number_of_task_or_finger_can_be_set() {
     }
     let radians = ["--set: task.strategy.tilt_deg: 0.1745 degrees", "0.1745 rad is 10.0 degrees"];
     fake(&format!("{EVALUATE} --set task.strategy.tilt_deg=0.1745")).fails(2, &radians);
+    fake(&format!("{EVALUATE} --set task.strategy.tilt_deg=0.15")).succeeds();
     let metres = ["--set: task.grip.tcp_z_mm: 0.0406 mm", "multiply by 1000: 40.60 mm"];
     fake(&format!("{EVALUATE} --set task.grip.tcp_z_mm=0.0406")).fails(2, &metres);
     let radians = ["--direction: 0.35 degrees", "0.35 rad is 20.1 degrees"];

@@ -412,6 +412,11 @@ fn a_plug_that_stops_early_is_refused() {
     let stops = "the plug stops after 2.00 of 12.00 mm, beside its seat";
     refused.fails(2, &["keyed-plug.stl", stops, "--depth-mm 2.00"]);
     assert!(!folder.dir("keyed.toml").exists());
+    let [file, other, out] =
+        ["keyed-plug.stl", "keyed-socket.stl", "keyed.toml"].map(|name| folder.word(name));
+    let given = ["--plug", &file, "--socket", &other, "--depth-mm", "2", "--out", &out, "--json"];
+    let found = optimize(&[&["task", "import"], &given[..]].concat()).json();
+    assert!(found["found"].to_string().contains(stops), "{found}");
     // The wall at +x begins at 3.6 mm, but for the slot.
     socket.retain(|[low, _]| low[0] < 3.0);
     let z = [-30.0, 0.0];

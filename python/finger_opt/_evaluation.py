@@ -89,6 +89,7 @@ class Bands(Result):
     widths, mm (``None``: more than 2 mm).
 
     ``unsure_inside_mm`` are the offsets, of those tried between the bands, at which not all repeats insert.
+    ``impossible_draws`` is the number of draws of the cell's numbers that are impossible on this task, and left out.
     """
 
     firm_negative_mm: float | None
@@ -97,6 +98,7 @@ class Bands(Result):
     positive_band_mm: float | None
     offsets_tried_inside: int
     unsure_inside_mm: tuple[float, ...]
+    impossible_draws: int
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)

@@ -89,6 +89,8 @@ class Trial(Subject):
     taught_start_mm: float | None = None
     #: Number of repeats by outcome; only with ``repeat``.
     repeats: dict[str, int] | None = None
+    #: Number of draws of the cell's numbers that are impossible on this task, and left out; only with ``repeat``.
+    impossible_draws: int | None = None
     series: Series = field(repr=False, metadata=DRAWN)
     #: Animation as an HTML page; only with ``film=True``.
     film: str | None = field(default=None, repr=False, metadata=DRAWN)

@@ -74,9 +74,10 @@ pub struct Evaluated {
     /// Largest acceptable contact force for connector and robot, N.
     #[serde(skip)]
     pub limit_n: f64,
-    /// Bands of offsets at the window's ends in which repeats have different outcomes, with `--repeat`.
+    /// Bands of offsets at the window's ends in which repeats have different outcomes, with `--repeat`, and the number
+    /// of impossible draws that were left out.
     #[serde(serialize_with = "serialize_bands", skip_serializing_if = "Option::is_none")]
-    pub bands: Option<Bands>,
+    pub bands: Option<(Bands, usize)>,
     /// The same finger with stiffness computed from its ribs.
     #[serde(serialize_with = "computed", skip_serializing_if = "Option::is_none")]
     pub computed: Option<ByRibs>,
@@ -118,7 +119,8 @@ impl Request {
                 context.part("offsets of the repeats", [done, of], cost);
             };
             context.begin(cost);
-            repeat.run(&setup, scenario, taught, stop, |repeats| repeats.bands(window, &progress))
+            repeat
+                .run(&setup, scenario, taught, context, |repeats| repeats.bands(window, &progress))
         };
         let repeat = self.repeat.filter(|_| window.nominal == Outcome::Inserted);
         let bands = repeat.map(bands).transpose()?;

@@ -7,7 +7,7 @@ use crate::layout;
 use crate::setup::driven::undriven;
 use crate::setup::film::FilmRequest;
 use crate::setup::finger::{ChosenFinger, FingerRequest, usage};
-use crate::setup::repeat::RepeatRequest;
+use crate::setup::repeat::{RepeatRequest, impossible_text};
 use crate::setup::request::SetupRequest;
 use crate::setup::task::outcome_json;
 use crate::setup::words::{parse_at_least_0, parse_number};
@@ -89,6 +89,9 @@ pub struct Done {
     /// Number of repeats with each outcome, with `--repeat`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub repeats: Option<BTreeMap<String, usize>>,
+    /// Number of draws of the cell's numbers that are impossible on this task and left out, with `--repeat`.
+    #[serde(rename = "impossible_draws", skip_serializing_if = "Option::is_none")]
+    pub impossible: Option<usize>,
     /// Time series from the start of the search, with `--every-s`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub series: Option<Value>,
@@ -140,9 +143,10 @@ impl Request {
         }
         drop(rig);
         let outcomes = |repeat: RepeatRequest| {
-            repeat.run(&setup, scenario, taught, stop, |repeats| repeats.outcomes(offset))
+            repeat.run(&setup, scenario, taught, context, |repeats| repeats.outcomes(offset))
         };
-        let repeats = self.repeat.map(outcomes).transpose()?.map(|outcomes| {
+        let (outcomes, impossible) = self.repeat.map(outcomes).transpose()?.unzip();
+        let repeats = outcomes.map(|outcomes| {
             let mut counts = BTreeMap::new();
             for outcome in outcomes {
                 let word = match outcome {
@@ -155,7 +159,7 @@ impl Request {
         });
         let series = self.every_s.map(|_| series(&samples));
         let taught_start_mm = taught.map(grid_mm);
-        Ok(Done { chosen, offset_mm, trial, taught_start_mm, repeats, series, page })
+        Ok(Done { chosen, offset_mm, trial, taught_start_mm, repeats, impossible, series, page })
     }
 }
 
@@ -167,7 +171,8 @@ impl Done {
             format!("repeats       {}\n", counts.collect::<Vec<_>>().join(", "))
         });
         let start = layout::lines(lines::taught(self.taught_start_mm));
-        format!("{}{start}{}{repeats}", self.chosen.text(), text(&self.trial))
+        let impossible = impossible_text(self.impossible.unwrap_or(0));
+        format!("{}{start}{}{repeats}{impossible}", self.chosen.text(), text(&self.trial))
     }
 }
 

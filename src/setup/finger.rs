@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::layout;
 use connector::check::{Problem, wrong_units};
 use input::shown;
-use input::units::{DEG, MM, N_PER_MM};
+use input::units::{MM, N_PER_MM};
 use input::wrong_unit;
 use insertion::evaluation::cell::Priors;
 use insertion::evaluation::evaluator::{Evaluator, Scenario};
@@ -17,7 +17,6 @@ use parameters::numbers;
 use report::answer::lines;
 use serde::{Serialize, Serializer};
 use serde_json::json;
-use std::f64::consts::FRAC_PI_2;
 
 /// Parses a stiffness, N/mm.
 fn stiffness(text: &str) -> Result<f64, String> {
@@ -113,10 +112,8 @@ impl FingerRequest {
         let chosen = self.choose_with(setup, &setup.evaluator)?;
         let of_space = setup.space.parameters.iter().find(|one| one.key == DIRECTION_KEY);
         let direction = self.infill.direction.zip(of_space);
-        let radians = direction.and_then(|(value, one)| {
-            let in_space = (one.low..=one.high).contains(&(value / DEG));
-            wrong_unit::angle(value, FRAC_PI_2, one.step).filter(|_| in_space)
-        });
+        let radians = direction
+            .and_then(|(value, one)| wrong_unit::angle(value, [one.low, one.high], one.step));
         if let Some(radians) = radians {
             return Err(Failure::usage(format!("--direction: {}", radians.join(" "))));
         }

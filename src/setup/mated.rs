@@ -1,7 +1,7 @@
 //! Creation of a task from the meshes of a plug and its socket, by their mated pose.
 
 use super::bodies::{PairRequest, Parts};
-use super::poses::{MatedPose, along_of, depth, jaws_of, mate};
+use super::poses::{MatedPose, depth, insert_along, jaws_of, mate};
 use crate::context::Context;
 use crate::failure::Failure;
 use connector::body::{extent, longest_side, width};
@@ -88,8 +88,8 @@ pub fn mated(
     let jaws: Vec<Vector3<f64>> = across.iter().filter(chosen).copied().collect();
     if jaws.is_empty() {
         let [a, b] = across.map(|way| value(jaws_of(&way)));
-        let problem =
-            format!("--jaws: the plug goes in along {}; give {a} or {b}", value(along_of(&-out)));
+        let along = value(insert_along(&mate));
+        let problem = format!("--jaws: the plug goes in along {along}; give {a} or {b}");
         return Err(Failure::usage(problem));
     }
     let long = width(extent(plug.iter().flatten().map(|p| mate.pose * p), out.iamax()));
@@ -122,7 +122,7 @@ pub fn mated(
     check_drawing(files, &made, seat, &request.out().with_extension("place.svg"))?;
     findings.extend(described(&mate, [long, depth], &made, request.body));
     findings.extend(parts.finding);
-    let (along, jaws) = (along_of(&-out), jaws_of(&made.jaws));
+    let (along, jaws) = (insert_along(&mate), jaws_of(&made.jaws));
     let like = like.map(|like| Family::Like(Box::new(like.clone())));
     let like = like.and_then(|family| Some((family.strategy_for(&made.task)?, family.name())));
     let mut strategy = "upright sweep".to_owned();
@@ -151,6 +151,7 @@ fn check_drawing(
     let (file, problem) = match (made.deviation, made.difference) {
         (Some((body, off)), _) => {
             let how = match off.out {
+                Some(f64::INFINITY) => "protrude from a drawing without faces".to_owned(),
                 Some(far) => format!("protrude {:.3} mm from the drawing", far / MM),
                 None => "lack a face of the drawing".to_owned(),
             };
@@ -286,13 +287,9 @@ pub fn unit(
             [plug, _] => {
                 let at = usize::from(plug.is_some());
                 let read = given.map_or("mm, m or in".to_owned(), value);
-                let (body, long) = (BODIES[at], longest[at]);
-                (
-                    at,
-                    format!(
-                        "read as {read}, the {body} ({long:.4} long) is shorter than 3 mm or longer than 300 mm, the size of connectors"
-                    ),
-                )
+                let [least, most] = SIZES.map(|side| side / MM);
+                let is = format!("the {} is {:.4} {read} long", BODIES[at], longest[at]);
+                (at, format!("{is}; connectors are {least:.0} to {most:.0} mm long"))
             }
         };
         return Err(Failure::in_file(files[at], problem));

@@ -27,7 +27,7 @@ pub struct MatedPose {
 impl MatedPose {
     fn new(mate: &Mate, first: &Mate) -> Self {
         MatedPose {
-            insert_along: value(along_of(&-mate.out.into_inner())),
+            insert_along: value(insert_along(mate)),
             depth_mm: mate.depth_m() / MM,
             turn_deg: mate.pose.rotation.angle_to(&first.pose.rotation) / DEG,
             origin_mm: (mate.pose.translation.vector / MM).into(),
@@ -61,7 +61,8 @@ pub fn mate(
     not_stopped(context.stop)?;
     let nowhere = |why: String| Failure::in_file(files.join(", "), why);
     let found = found.map_err(|error| {
-        let fits = (error == MatingError::NoFit).then(|| mirrored_fit([plug, socket], context));
+        let fits = (error == MatingError::NoFit)
+            .then(|| mirrored_fit([plug, socket], request.insert_along, context));
         nowhere(match fits.flatten() {
             Some((_, text)) => format!("the plug does not fit into the socket; {text}"),
             None => error.to_string(),
@@ -74,7 +75,7 @@ pub fn mate(
         findings.push(("symmetry", format!("the first of {copies} equal poses is taken")));
     }
     if let Some(along) = request.insert_along {
-        all.retain(|mate| along_of(&-mate.out.into_inner()) == along);
+        all.retain(|mate| insert_along(mate) == along);
     }
     let Some(first) = all.first() else {
         let along = request.insert_along.map(value).unwrap_or_default();
@@ -88,36 +89,46 @@ pub fn mate(
         findings.push(("poses", format!("{} is taken (--pose): {list}", request.pose)));
     }
     let taken = all.swap_remove(request.pose - 1);
-    // An assembly and a depth are taken as they are given.
-    if taken.missed_m > 0.0 && request.assembly.is_none() && request.depth_mm.is_none() {
-        let stops = stopped_early(&taken, [plug, socket], context);
+    if taken.missed_m > 0.0 {
+        let given = request.assembly.is_some() || request.depth_mm.is_some();
+        let stops = stopped_early(&taken, [plug, socket], given, context);
         not_stopped(context.stop)?;
         findings.push(("warning", stops.map_err(nowhere)?));
     }
     Ok((taken, poses))
 }
 
-/// Returns the depth over which a mirrored plug engages, mm, and a remark on it; `None` if it does not reach its seat.
-fn mirrored_fit([plug, socket]: [&[Triangle]; 2], context: &Context<'_>) -> Option<(f64, String)> {
-    let found = mates(&mirrored(plug), socket, context.stop).ok()?;
-    let mate = found.mates.first().filter(|mate| mate.missed_m == 0.0)?;
+/// Returns the depth over which a mirrored plug engages in the given direction, mm, and a remark on it; `None` if it
+/// does not reach its seat.
+fn mirrored_fit(
+    [plug, socket]: [&[Triangle]; 2],
+    along: Option<InsertionAxis>,
+    context: &Context<'_>,
+) -> Option<(f64, String)> {
+    let mut found = mates(&mirrored(plug), socket, context.stop).ok()?.mates.into_iter();
+    let mate = found.find(|mate| along.is_none_or(|along| insert_along(mate) == along));
+    let mate = mate.filter(|mate| mate.missed_m == 0.0)?;
     let mm = mate.engaged_m / MM;
     Some((mm, format!("mirrored, it engages over {mm:.2} mm: mirror one of the two")))
 }
 
-/// Returns a warning of a plug that stops before its seat.
+/// Returns a warning of a plug that stops before its seat; `given` is whether an assembly or the depth is given.
 ///
 /// # Errors
-/// If a mirrored plug engages deeper, or if the plug stops before half of its depth.
+/// Unless it is given, if a mirrored plug engages deeper, or if the plug stops before half of its depth.
 fn stopped_early(
     mate: &Mate,
     parts: [&[Triangle]; 2],
+    given: bool,
     context: &Context<'_>,
 ) -> Result<String, String> {
     let [engaged, missed] = [mate.engaged_m, mate.missed_m].map(|depth| depth / MM);
     let possible = engaged + missed;
     let stops = format!("the plug stops after {engaged:.2} of {possible:.2} mm, beside its seat");
-    match mirrored_fit(parts, context) {
+    if given {
+        return Ok(stops);
+    }
+    match mirrored_fit(parts, Some(insert_along(mate)), context) {
         Some((mm, text)) if mm > engaged => Err(format!("{stops}; {text}")),
         _ if missed > engaged => Err(format!(
             "{stops}: is a key on the wrong side, or a screw in the way? correct the file, select bodies with --plug-body, or \
@@ -144,11 +155,16 @@ pub fn depth(request: &PairRequest, mate: &Mate, long: f64) -> Result<f64, Failu
     Err(Failure::usage(format!("--depth-mm {depth_mm}: {problem}")))
 }
 
+/// Returns the direction of insertion of a mate, in the file of the socket.
+pub(super) fn insert_along(mate: &Mate) -> InsertionAxis {
+    along_of(&-mate.out.into_inner())
+}
+
 pub(super) fn jaws_of(way: &Vector3<f64>) -> JawAxis {
     [JawAxis::X, JawAxis::Y, JawAxis::Z][way.iamax()]
 }
 
-pub(super) fn along_of(way: &Vector3<f64>) -> InsertionAxis {
+fn along_of(way: &Vector3<f64>) -> InsertionAxis {
     let axis = way.iamax();
     InsertionAxis::value_variants()[2 * axis + usize::from(way[axis] < 0.0)]
 }

@@ -1,14 +1,14 @@
 //! Repeats of a trial or an evaluation with small variations.
 
 use super::Setup;
-use crate::context::not_stopped;
+use crate::context::Context;
 use crate::failure::Failure;
+use input::counted;
 use insertion::evaluation::OffsetStep;
 use insertion::evaluation::evaluator::Scenario;
 use insertion::evaluation::robustness::repeat::{Band, Bands, Repeats};
 use serde::{Serialize, Serializer};
 use serde_json::json;
-use std::sync::atomic::AtomicBool;
 
 /// Number and seed of repeats with small variations of friction, start and step.
 #[derive(Debug, Clone, Copy, clap::Args)]
@@ -30,26 +30,36 @@ pub struct RepeatRequest {
 }
 
 impl RepeatRequest {
-    /// Calls `measure` with the varied repeats of a scenario from this taught start, and returns its result.
+    /// Calls `measure` with the varied repeats of a scenario from this taught start; returns its result, and the number
+    /// of impossible draws of the cell's numbers, which are left out.
     pub(crate) fn run<T>(
         &self,
         setup: &Setup,
         scenario: &Scenario,
         taught: Option<OffsetStep>,
-        stop: &AtomicBool,
+        context: &Context<'_>,
         measure: impl Fn(&Repeats) -> T,
-    ) -> Result<T, Failure> {
-        let (evaluator, repeats) = (&setup.evaluator, (self.seed, self.count));
-        let started = evaluator.drawn(scenario, taught, repeats, stop).map_err(Failure::input)?;
+    ) -> Result<(T, usize), Failure> {
+        let (evaluator, repeats, stop) = (&setup.evaluator, (self.seed, self.count), context.stop);
+        let progress = |done_of| context.part("starts of the repeats", done_of, 0.0);
+        let started = evaluator.drawn(scenario, taught, repeats, stop, progress);
+        let (started, impossible) = started.map_err(Failure::input)?;
         let measured = evaluator.repeated(&started, repeats, stop, measure);
         let measured = measured.map_err(Failure::input)?;
-        not_stopped(stop)?;
-        Ok(measured)
+        context.check()?;
+        Ok((measured, impossible))
     }
 }
 
-/// Returns the bands of offsets at the ends of a window in which repeats have different outcomes, as lines.
-pub fn bands_text(bands: &Bands) -> String {
+/// Returns the number of impossible draws as a line; empty if there are none.
+pub fn impossible_text(draws: usize) -> String {
+    let left_out = || format!("left out      {} impossible on this task\n", counted(draws, "draw"));
+    (draws > 0).then(left_out).unwrap_or_default()
+}
+
+/// Returns the bands of offsets at the ends of a window in which repeats have different outcomes, and the number of
+/// impossible draws, as lines.
+pub fn bands_text((bands, impossible): &(Bands, usize)) -> String {
     let width = |band: &Band| {
         band.width_mm().map_or("more than 2 mm".to_owned(), |width| format!("{width:.1} mm"))
     };
@@ -69,9 +79,10 @@ pub fn bands_text(bands: &Bands) -> String {
         format!("{:.1} mm ({from:+.1} to {to:+.1}), whose ends insert in every repeat", to - from)
     });
     format!(
-        "firm          {firm}\nunsure bands  {} below, {} above\nbetween them  {inside}\n",
+        "firm          {firm}\nunsure bands  {} below, {} above\nbetween them  {inside}\n{}",
         width(&bands.negative),
-        width(&bands.positive)
+        width(&bands.positive),
+        impossible_text(*impossible)
     )
 }
 
@@ -80,10 +91,10 @@ pub fn bands_text(bands: &Bands) -> String {
 /// # Errors
 /// Those of the serializer.
 pub fn serialize_bands<S: Serializer>(
-    bands: &Option<Bands>,
+    bands: &Option<(Bands, usize)>,
     serializer: S,
 ) -> Result<S::Ok, S::Error> {
-    let fields = bands.as_ref().map(|bands| {
+    let fields = bands.as_ref().map(|(bands, impossible_draws)| {
         json!({
             "firm_negative_mm": bands.firm_mm().map(|[from, _]| from),
             "firm_positive_mm": bands.firm_mm().map(|[_, to]| to),
@@ -91,6 +102,7 @@ pub fn serialize_bands<S: Serializer>(
             "positive_band_mm": bands.positive.width_mm(),
             "offsets_tried_inside": bands.tried_inside,
             "unsure_inside_mm": bands.uncertain_inside,
+            "impossible_draws": impossible_draws,
         })
     });
     fields.serialize(serializer)

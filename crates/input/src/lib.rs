@@ -10,9 +10,10 @@ pub mod wrong_unit;
 
 pub use place::{InputError, Place, Placed, RequestError};
 use serde::de::DeserializeOwned;
+use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
 use toml::Spanned;
-use toml::de::DeTable;
+use toml::de::{DeTable, DeValue, ValueDeserializer};
 use wrong_unit::WrongUnit;
 
 /// Largest magnitude of a number in a file. A larger one is probably in a wrong unit, and could overflow in sums and
@@ -54,13 +55,13 @@ fn nearest_key<'a>(message: &'a str, more: &[&'a str]) -> Option<&'a str> {
 pub struct Document<'a> {
     text: &'a str,
     file: &'a str,
-    tree: Spanned<DeTable<'a>>,
+    tree: Spanned<DeValue<'a>>,
     /// Keys of the file that were taken out of the tree.
     taken: &'a [&'a str],
 }
 
-/// Largest number of unknown keys that are reported at once.
-const MAX_UNKNOWN: usize = 10;
+/// Largest number of faults that are reported at once.
+const MAX_FAULTS: usize = 10;
 
 /// Number of parsed texts.
 static PARSED: AtomicU64 = AtomicU64::new(0);
@@ -77,7 +78,8 @@ impl<'a> Document<'a> {
     /// If the text is not TOML.
     pub fn parse(text: &'a str, file: &'a str) -> Result<Self, InputError> {
         PARSED.fetch_add(1, Ordering::Relaxed);
-        let tree = DeTable::parse(text).map_err(|error| syntax(file, text, &error))?;
+        let table = DeTable::parse(text).map_err(|error| syntax(file, text, &error))?;
+        let tree = Spanned::new(table.span(), DeValue::Table(table.into_inner()));
         Ok(Document { text, file, tree, taken: &[] })
     }
 
@@ -88,8 +90,10 @@ impl<'a> Document<'a> {
 
     /// Returns the document without these top-level keys.
     pub fn without(mut self, keys: &'a [&'a str]) -> Self {
-        for key in keys {
-            self.tree.get_mut().remove(*key);
+        if let DeValue::Table(table) = self.tree.get_mut() {
+            for key in keys {
+                table.remove(*key);
+            }
         }
         Document { taken: keys, ..self }
     }
@@ -100,7 +104,7 @@ impl<'a> Document<'a> {
     /// If the document does not have the structure of `T`, has a control character, or has a `name` that is empty or
     /// has several lines.
     pub fn read<T: DeserializeOwned>(&self) -> Result<T, InputError> {
-        let (value, table) = (self.deserialize(MAX_UNKNOWN)?, self.deserialize(0)?);
+        let (value, table) = (self.deserialize(MAX_FAULTS)?, self.deserialize(1)?);
         if let Some((key, problem)) = bad_text(&table) {
             return Check { file: self.file }.fail(&key, problem);
         }
@@ -110,28 +114,44 @@ impl<'a> Document<'a> {
         Ok(value)
     }
 
-    /// Deserializes the tree; the error lists up to `most` unknown keys, then the first other fault.
+    /// Deserializes the tree; the error lists up to `most` faults: the unknown keys, then the first other one.
     fn deserialize<T: DeserializeOwned>(&self, most: usize) -> Result<T, InputError> {
-        let read = T::deserialize(toml::de::Deserializer::from(self.tree.clone()));
+        let read = T::deserialize(ValueDeserializer::from(self.tree.clone()));
         read.map_err(|mut error| {
             error.set_input(Some(self.text));
             let near = nearest_key(error.message(), self.taken);
             let mut found = fault(self.file, self.text, &error, near);
-            let rest = || {
-                let (at, mut text) = (error.span()?, self.text.to_owned());
-                let name = error.message().strip_prefix("unknown field `")?;
-                name.strip_prefix(text.get(at.clone())?)?;
-                // Reads on as if the key were the nearest one or, without one, its line a comment.
-                text.replace_range(at, near.unwrap_or("#"));
-                let document = Document::parse(&text, self.file).ok()?.without(self.taken);
-                document.deserialize::<T>(most.checked_sub(1)?).err()
-            };
-            if let Some(rest) = rest() {
+            // Reads on as if the key were the nearest one or, without one, absent.
+            let (mut rest, near) = (self.clone(), near.filter(|near| !self.taken.contains(near)));
+            if most > 1
+                && error.message().starts_with("unknown field `")
+                && error.span().is_some_and(|at| replace_key(rest.tree.get_mut(), &at, near))
+                && let Err(rest) = rest.deserialize::<T>(most - 1)
+            {
                 found.problem += &format!("\n{}", rest.problem);
             }
             found
         })
     }
+}
+
+/// Renames the key at these bytes of the text; removes it if there is no `new` name or the name is taken. Returns
+/// whether the key was found.
+fn replace_key(value: &mut DeValue<'_>, at: &Range<usize>, new: Option<&str>) -> bool {
+    let table = match value {
+        DeValue::Table(table) => table,
+        DeValue::Array(items) => {
+            return items.iter_mut().any(|item| replace_key(item.get_mut(), at, new));
+        }
+        _ => return false,
+    };
+    let Some(key) = table.keys().find(|key| key.span() == *at).cloned() else {
+        return table.iter_mut().any(|(_, value)| replace_key(value.get_mut(), at, new));
+    };
+    if let (Some(value), Some(new)) = (table.remove(&key), new) {
+        table.entry(Spanned::new(at.clone(), new.to_owned().into())).or_insert(value);
+    }
+    true
 }
 
 /// Reads TOML; `file` is named in errors.
@@ -345,6 +365,13 @@ mod tests {
         };
         assert!(found.len() == 4 && found.iter().zip(expected).all(begin), "{text}");
         assert!(text.contains("line 1,") && text.contains("did you mean `name`?"), "{text}");
+        let line = "friction = [{ plug_sockt = 1, plug_scket = 2 }]";
+        let text = format!("mass_g = 1\nname = 3\n{line}");
+        let text = read::<Pair>(&text, "t.toml").unwrap_err().to_string();
+        assert!(text.matches(line).count() == 2 && text.contains("| name = 3"), "{text}");
+        let many: String = (0..20).map(|i| format!("other_{i} = 1\n")).collect();
+        let text = read::<Pair>(&many, "t.toml").unwrap_err().to_string();
+        assert_eq!(text.matches("unknown field").count(), MAX_FAULTS);
         let document = Document::parse("kind = 1\nknd = 2\nplug_socket = 1", "t.toml").unwrap();
         let error = document.without(&["kind"]).read::<Friction>().unwrap_err().to_string();
         assert!(error.ends_with("did you mean `kind`?"), "{error}");

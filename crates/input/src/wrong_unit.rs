@@ -39,15 +39,15 @@ pub fn remedy(unit: &str, value: f64, [low, high]: [f64; 2]) -> String {
     }
 }
 
-/// Checks that an angle, degrees, is not in radians: that its magnitude is at least `least`, or it is a multiple of
-/// `step`.
-pub fn angle(degrees: f64, least: f64, step: f64) -> Option<WrongUnit> {
+/// Checks that an angle, degrees, is not in radians: that it is a multiple of `step`, or that its magnitude would in
+/// radians be beyond the plausible range, degrees.
+pub fn angle(degrees: f64, [low, high]: [f64; 2], step: f64) -> Option<WrongUnit> {
     let steps = degrees / step;
-    if degrees.abs() >= least || (steps - steps.round()).abs() < 1e-6 {
+    if !(low..=high).contains(&(degrees.abs() / DEG)) || (steps - steps.round()).abs() < 1e-6 {
         return None;
     }
-    let [degrees, least] = [degrees, least].map(|angle| (angle * 1e4).round() / 1e4);
-    let problem = format!("{degrees} degrees is less than {least}: are these radians?");
+    let degrees = (degrees * 1e4).round() / 1e4;
+    let problem = format!("{degrees} degrees: are these radians?");
     let remedy = format!("angles are in degrees: {degrees} rad is {:.1} degrees", degrees / DEG);
     Some([problem, remedy])
 }

@@ -233,7 +233,15 @@ mod tests {
             false => line,
         });
         let home = home.collect::<Vec<_>>().join("\n");
-        refused(Robot::parse(&home, "r.toml"), &["home_deg: 4.7 degrees is less", "269.3 degrees"]);
+        refused(Robot::parse(&home, "r.toml"), &["home_deg: 4.7 degrees: are", "269.3 degrees"]);
+        let flat = arm.text.replace(
+            "home_deg = [270.0, -90.0, -90.0, 270.0, 90.0, 0.0]",
+            "home_deg = [0.5, 0, 0, -1.5, 0, 0]",
+        );
+        assert_ne!(flat, arm.text);
+        Robot::parse(&flat, "r.toml").unwrap();
+        let (five, _) = short.rsplit_once("[[joint]]").unwrap();
+        refused(Robot::parse(five, "r.toml"), &["there are 5 [[joint]]"]);
         let heavy = robot_file("ur5e").text.replace("link_mass_kg = 3.7", "link_mass_kg = 3700");
         let problem = "joint \"shoulder pan\" link_mass_kg: is 3700";
         refused(Robot::parse(&heavy, "r.toml"), &[problem]);

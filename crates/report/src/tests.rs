@@ -42,7 +42,7 @@ fn record(evaluations: Vec<Recorded>) -> StudyRecord {
     let config =
         StudyConfig { seed, budget, provenance: provenance.clone(), ..fixture.config.clone() };
     let segments = vec![Segment { first: 0, provenance }];
-    StudyRecord { config, segments, evaluations, ..fixture }
+    StudyRecord { config, segments, evaluations, confirmation_due: false, ..fixture }
 }
 
 fn html(study: &StudyRecord) -> String {

@@ -69,6 +69,11 @@ impl ConfirmationFile {
         let file: ConfirmationFile = read_analysis(dir, WALK_FILE)?;
         provenance?.simulates_like(&file.provenance).then_some(file)
     }
+
+    /// Returns whether the search settled after this number of evaluations.
+    pub fn settled(&self, evaluations: usize) -> bool {
+        self.settled_after == Some(evaluations as u64)
+    }
 }
 
 impl Rule<'_> {
@@ -106,21 +111,13 @@ fn with_windows(rule: &Rule, before: &Recorded, found: &[Evaluation]) -> Recorde
     recorded
 }
 
-/// Returns whether the search settled after this number of evaluations.
-pub(super) fn settled(dir: &Path, provenance: Option<&Provenance>, evaluations: usize) -> bool {
-    let file = ConfirmationFile::read(dir, provenance);
-    file.and_then(|file| file.settled_after) == Some(evaluations as u64)
-}
-
-/// Reads the walked designs, best first, and the firm value of the first objective of every design whose
-/// ends were repeated, by evaluation. Both are empty if the confirmation is incomplete.
-pub(super) fn read(
-    dir: &Path,
+/// Returns the walked designs, best first, and the firm value of the first objective of every design whose
+/// ends were repeated, by evaluation. Both are empty without a complete confirmation.
+pub(super) fn confirmed_designs(
+    file: Option<ConfirmationFile>,
     rule: &Rule,
-    provenance: Option<&Provenance>,
     current: &[Recorded],
 ) -> (Vec<Walked>, BTreeMap<u64, f64>) {
-    let file = ConfirmationFile::read(dir, provenance).filter(|file| file.complete);
     let (mut walked, mut firm_values) = (Vec::new(), BTreeMap::new());
     for row in file.map_or(Vec::new(), |file| file.designs) {
         let Some(before) = current.iter().find(|r| r.index == row.evaluation) else { continue };

@@ -13,7 +13,7 @@
 //! ```
 
 use super::config::{AnalysisSettings, StudyConfig};
-use super::confirmed;
+use super::confirmed::{ConfirmationFile, confirmed_designs};
 use super::error::StudyError;
 use super::header;
 use super::journal::{self, Contents, JOURNAL_FILE, Journal};
@@ -221,7 +221,8 @@ impl Study {
 
     /// Returns whether the search has settled (stopped early) with these evaluations.
     pub fn settled(&self) -> bool {
-        confirmed::settled(&self.dir, Some(self.provenance()), self.evaluations.len())
+        ConfirmationFile::read(&self.dir, Some(self.provenance()))
+            .is_some_and(|file| file.settled(self.evaluations.len()))
     }
 
     /// Returns a copy of the study with its analyses.
@@ -252,8 +253,13 @@ impl StudyRecord {
         let provenance = segments.last().map(|segment| &segment.provenance);
         let on_bench = provenance.and_then(|provenance| BenchPrediction::read(dir, provenance));
         let current = evaluations.get(first_current(&segments) as usize..).unwrap_or_default();
-        let (walked, firm_values) = confirmed::read(dir, &Rule::of(&config), provenance, current);
-        let settled = config.settles && confirmed::settled(dir, provenance, evaluations.len());
+        let file = ConfirmationFile::read(dir, provenance);
+        let settled =
+            config.settles && file.as_ref().is_some_and(|file| file.settled(evaluations.len()));
+        let file = file.filter(|file| file.complete);
+        let confirms = config.optimizes_windows() && !config.conclusion.no_confirm;
+        let confirmation_due = confirms && file.is_none();
+        let (walked, firm_values) = confirmed_designs(file, &Rule::of(&config), current);
         StudyRecord {
             config,
             segments,
@@ -265,6 +271,7 @@ impl StudyRecord {
             firm_values,
             on_bench,
             settled,
+            confirmation_due,
         }
     }
 

@@ -51,6 +51,8 @@ pub struct StudyRecord {
     pub on_bench: Option<BenchPrediction>,
     /// Whether the search has settled: no design was expected to improve on the best.
     pub settled: bool,
+    /// Whether the best designs are to be confirmed and the confirmation is not complete.
+    pub confirmation_due: bool,
 }
 
 /// Confirmed design whose windows were walked: searched again in steps of 0.1 mm.
@@ -164,13 +166,13 @@ impl StudyRecord {
         (self.foreign > 0).then(foreign).into_iter().collect()
     }
 
-    /// Returns whether the search has not ended: it was interrupted, or is running. A polish may converge at any
-    /// number of evaluations, so that its end is not known.
+    /// Returns whether the search or the confirmation has not ended: it was interrupted, or is running. A polish may
+    /// converge at any number of evaluations, so that its end is not known.
     pub fn unfinished(&self) -> bool {
         let StudyRecord { config, segments, evaluations, .. } = self;
         let most = most_evaluations(config, segments, evaluations).min(config.budget);
         let most = most.min(Grid::new(config.space.levels()).size());
-        !self.settled && (evaluations.len() as u64) < most
+        !self.settled && (self.confirmation_due || (evaluations.len() as u64) < most)
     }
 
     /// Returns the provenance of the last segment.

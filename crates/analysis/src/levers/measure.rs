@@ -16,7 +16,7 @@ use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 /// Largest number of windows measured; levers beyond it are left out.
-const MOST_WINDOWS: usize = 20;
+const MAX_WINDOWS: usize = 20;
 
 /// Inputs of the lever analysis of a finger on a task.
 pub struct LeverAnalysis<'a> {
@@ -87,7 +87,7 @@ impl LeverAnalysis<'_> {
         })
     }
 
-    /// Returns the levers to measure and the names of those that exceed [`MOST_WINDOWS`]. The scenarios of their ends
+    /// Returns the levers to measure and the names of those that exceed [`MAX_WINDOWS`]. The scenarios of their ends
     /// are appended to `scenarios`, the first of which is the baseline.
     fn candidates(
         &self,
@@ -109,7 +109,7 @@ impl LeverAnalysis<'_> {
             if more.is_empty() {
                 continue;
             }
-            if scenarios.len() + more.len() > MOST_WINDOWS {
+            if scenarios.len() + more.len() > MAX_WINDOWS {
                 left_out.push(lever.parameter.name);
                 continue;
             }

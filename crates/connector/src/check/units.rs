@@ -16,8 +16,8 @@ pub const FACES_MM: [f64; 2] = [1.0, 100.0];
 const MIN_SHARE: [f64; 2] = [1.0 / 8.0, 1.0 / 20.0];
 /// Largest plausible width of a plug as a share of its opening, in both directions.
 const MAX_SHARE: f64 = 8.0;
-/// Smallest plausible tilt except 0, degrees. Smaller numbers are angles up to 15 degrees, in radians.
-const MIN_TILT_DEG: f64 = 0.27;
+/// Range of plausible tilts, degrees.
+const TILT_DEG: [f64; 2] = [2.0, 15.5];
 /// Grip force, and its plausible range, N.
 const FORCE: &str = "grip.force_n";
 const FORCE_N: [f64; 2] = [0.01, 200.0];
@@ -59,12 +59,12 @@ pub(super) fn problems(case: &TaskBodies) -> Vec<Problem> {
             Ending::Duration(_) => None,
         });
     }
-    // `task tune` varies a tilt in steps of 0.1 degrees.
+    // Round numbers are degrees: 0.05, 0.15 and 0.25 rad are no whole degrees, and `task tune` varies a tilt by 0.1.
     for (key, tilt, step) in [
-        ("strategy.tilt_deg", task.strategy.tilt, 0.1),
-        ("success.tilt_deg", task.success.tilt, MIN_TILT_DEG),
+        ("strategy.tilt_deg", task.strategy.tilt, 0.05),
+        ("success.tilt_deg", task.success.tilt, 1.0),
     ] {
-        found.extend(problem(key, wrong_unit::angle(tilt / DEG, MIN_TILT_DEG, step)));
+        found.extend(problem(key, wrong_unit::angle(tilt / DEG, TILT_DEG, step)));
     }
     found.extend(problem(FORCE, wrong_unit::number(FORCE, grip.force, FORCE_N)));
     if found.is_empty() {

@@ -32,6 +32,8 @@ const SHARE: f64 = 0.4;
 
 /// Step of the depth at which more walls could face each other, m.
 const DROP: f64 = 0.1 * MM;
+/// Share of the largest area of walls that face one another from which all of them count as facing.
+const FULL_AREA: f64 = 0.995;
 
 /// Refined pose of the plug.
 #[derive(Debug, Clone, Default)]
@@ -314,7 +316,7 @@ impl Fine {
         let areas: Vec<(f64, f64)> = lower.map(|by| (walls(by), by)).collect();
         let most = areas.iter().fold(0.0, |most, (area, _)| area.max(most));
         // In a deep socket the area stays the same below the depth at which all walls face one another.
-        let first = areas.into_iter().find(|(area, _)| *area >= 0.995 * most);
+        let first = areas.into_iter().find(|(area, _)| *area >= FULL_AREA * most);
         first.filter(|_| SIMILAR * most > walls(0.0)).map_or(0.0, |(_, by)| by)
     }
 

@@ -21,7 +21,6 @@ use input::units::{DEG, MM};
 use input::{Check, InputError, wrong_unit};
 use nalgebra::{Point3, Translation3, Unit, UnitQuaternion, Vector3};
 use serde::Deserialize;
-use std::f64::consts::PI;
 
 /// Range of the length of all links of an arm, mm.
 const REACH_MM: [f64; 2] = [100.0, 10_000.0];
@@ -116,25 +115,27 @@ struct RawJoint {
 impl RawArm {
     /// Returns the arm after checking its units and that it has six joints.
     pub fn arm(self, check: Check<'_>) -> Result<Arm, InputError> {
-        let reach = self.joint.iter().map(|joint| Vector3::from(joint.offset).norm()).sum::<f64>();
-        check
-            .unit("joint: all offset_mm together", wrong_unit::number("", reach / MM, REACH_MM))?;
-        // Whole numbers are degrees.
-        let radians = |angle: f64| wrong_unit::angle(angle / DEG, 2.0 * PI, 1.0);
-        if self.home.iter().all(|angle| angle.abs() < 2.0 * PI * DEG) {
-            check.unit("home_deg", self.home.into_iter().find_map(radians))?;
-        }
         let joints: Vec<Joint> = self.joint.into_iter().map(Joint::from).collect();
         let joints = <[Joint; JOINTS]>::try_from(joints).or_else(|joints| {
             check.fail("joint", format!("there are {} [[joint]]; an arm has six", joints.len()))
         })?;
-        Ok(Arm {
+        let reach = joints.iter().map(|joint| joint.frame.translation.vector.norm()).sum::<f64>();
+        check
+            .unit("joint: all offset_mm together", wrong_unit::number("", reach / MM, REACH_MM))?;
+        let arm = Arm {
             joints,
             tool: frame(self.tool, self.tool_turn),
             home: Angles::from(self.home),
             feed_forward: self.velocity_feed_forward,
             assembly_force: self.assembly_force_n,
-        })
+        };
+        let points_down = |home: Angles| (arm.posture(&home).tcp.rotation * Vector3::z()).z > 0.5;
+        if !points_down(arm.home) && points_down(arm.home / DEG) {
+            // Whole numbers are degrees.
+            let radians = |angle: f64| wrong_unit::angle(angle / DEG, [0.0, 360.0], 1.0);
+            check.unit("home_deg", self.home.into_iter().find_map(radians))?;
+        }
+        Ok(arm)
     }
 }
 

@@ -25,7 +25,7 @@ use input::units::N_PER_MM;
 use parameters::{Parameter, numbers};
 use rayon::prelude::*;
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 /// Models, tasks, robot, engine and cell: everything that determines the evaluation of a design.
 ///
@@ -92,6 +92,9 @@ impl Scenario {
         }
     }
 }
+
+/// Scenario, and the shift of its taught start, grid steps.
+pub type Started = (Scenario, Option<OffsetStep>);
 
 /// Evaluations of one design on all tasks.
 #[derive(Debug, Clone, PartialEq)]
@@ -248,40 +251,50 @@ impl Evaluator {
     }
 
     /// Returns a scenario with `count` draws of the cell's parameters, the same for all designs, each with its own
-    /// taught start. Without a cell returns the scenario with the given taught start. The result is invalid once `stop`
-    /// is set.
+    /// taught start, and the number of draws left out because the task cannot exist with them. Without a cell or a
+    /// possible draw returns the scenario with the given taught start. Calls `progress` with the numbers of starts taught
+    /// and to teach. The result is invalid once `stop` is set.
     pub fn drawn(
         &self,
         scenario: &Scenario,
         taught: Option<OffsetStep>,
         (seed, count): (u64, u32),
         stop: &AtomicBool,
-    ) -> Result<Vec<(Scenario, Option<OffsetStep>)>, RigError> {
-        let drawn = |cell: &Priors| -> Vec<Scenario> {
-            let draws = parameters::draws(&cell.parameters, seed, count).into_iter();
-            // A draw with which the task cannot exist, such as a plug wider than its opening, is no possible cell.
-            draws.filter_map(|values| self.in_cell(scenario, cell, &values).ok()).collect()
+        progress: impl Fn([usize; 2]) + Sync,
+    ) -> Result<(Vec<Started>, usize), RigError> {
+        let Some(cell) = &self.cell else { return Ok((vec![(scenario.clone(), taught)], 0)) };
+        let draws = parameters::draws(&cell.parameters, seed, count);
+        // Such as with a plug wider than its opening.
+        let possible = draws.iter().filter_map(|values| self.in_cell(scenario, cell, values).ok());
+        let scenarios: Vec<Scenario> = possible.collect();
+        let (done, of) = (AtomicUsize::new(0), scenarios.len());
+        let started = |one: Scenario| {
+            let taught = self.taught(&one, stop)?;
+            if taught.is_some() {
+                progress([done.fetch_add(1, Ordering::Relaxed) + 1, of]);
+            }
+            Ok((one, taught))
         };
-        let scenarios = self.cell.as_ref().map_or_else(Vec::new, drawn);
-        if scenarios.is_empty() {
-            return Ok(vec![(scenario.clone(), taught)]);
+        let mut started: Vec<_> =
+            scenarios.into_par_iter().map(started).collect::<Result<_, RigError>>()?;
+        if started.is_empty() {
+            started.push((scenario.clone(), taught));
         }
-        let started = |one: Scenario| self.taught(&one, stop).map(|taught| (one, taught));
-        scenarios.into_par_iter().map(started).collect()
+        Ok((started, draws.len() - of))
     }
 
     /// Calls `measure` with `count` repeats of scenarios from their taught starts, in turn, every other one at half the
     /// time step.
     pub fn repeated<T>(
         &self,
-        started: &[(Scenario, Option<OffsetStep>)],
+        started: &[Started],
         (seed, count): (u64, u32),
         stop: &AtomicBool,
         measure: impl FnOnce(&Repeats) -> T,
     ) -> Result<T, RigError> {
         // A single scenario has both steps.
         let started = started.iter().cycle().take(started.len().max(2)).enumerate();
-        let rig = |(index, (one, shift)): (usize, &(Scenario, Option<OffsetStep>))| {
+        let rig = |(index, (one, shift)): (usize, &Started)| {
             let rig = self.rig(one, *shift, [1.0, 0.5][index % 2])?;
             Ok((rig, Grasp { stop, ..Grasp::of(&one.finger) }))
         };

@@ -4,7 +4,7 @@ use super::words::{mm, rounded};
 use serde::Serialize;
 
 /// Share of the range that a well-centred start has at least on either side.
-const LEAST_SHARE: f64 = 0.25;
+const MIN_SHARE: f64 = 0.25;
 
 /// Position of the taught start in the window of a finger.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -28,7 +28,7 @@ impl Start {
         if !(negative_mm <= 0.0 && positive_mm >= 0.0 && range_mm > 0.0) {
             return None;
         }
-        let one_sided = positive_mm.min(-negative_mm) < LEAST_SHARE * range_mm;
+        let one_sided = positive_mm.min(-negative_mm) < MIN_SHARE * range_mm;
         // To micrometres, without the error of adding tenths.
         let to_middle_mm = rounded((negative_mm + positive_mm) / 2.0, 3);
         let side = if to_middle_mm < 0.0 { "-y" } else { "+y" };

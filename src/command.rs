@@ -1,9 +1,9 @@
 //! Interface of a command: a request, parsed from the command line or from keywords, and its output, printed as text
 //! or as JSON.
 
-use crate::context::{Context, Program};
-use crate::failure::Failure;
+use crate::context::Program;
 use crate::terminal;
+use crate::{Context, Failure};
 use clap::{Arg, ArgAction, ArgMatches, Args};
 use serde::Serialize;
 use serde_json::Value;

@@ -40,3 +40,8 @@ pub mod python;
 pub mod setup;
 pub mod studies;
 pub mod terminal;
+
+pub use command::Output;
+pub use context::{Context, not_stopped};
+pub use failure::Failure;
+pub use setup::Setup;

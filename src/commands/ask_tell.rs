@@ -1,9 +1,7 @@
 //! `optimize ask-tell`: optimizers for any problem, over JSON lines.
 
-use crate::command::{self, Output};
-use crate::context::Context;
-use crate::failure::Failure;
 use crate::terminal;
+use crate::{Context, Failure, Output, command};
 use ask_tell::protocol::{MAX_LINE_BYTES, Session};
 use std::io::{self, BufRead, Read};
 

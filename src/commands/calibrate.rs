@@ -1,13 +1,11 @@
 //! `optimize calibrate`: predicts every finger on the bench.
 
-use crate::command::{self, Output};
-use crate::context::Context;
-use crate::failure::Failure;
 use crate::layout::wrapped;
 use crate::progress::cost;
 use crate::setup::bench::{BenchRequest, CalibrationRequest, Prepared, folds};
 use crate::setup::measured;
 use crate::setup::request::several;
+use crate::{Context, Failure, Output, command};
 use calibration::bench::Settings;
 use calibration::calibrate::Calibration;
 use calibration::table;

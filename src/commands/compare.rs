@@ -1,8 +1,6 @@
 //! `optimize compare`: studies of the same problem side by side.
 
-use crate::command::{self, Output};
-use crate::context::Context;
-use crate::failure::Failure;
+use crate::{Context, Failure, Output, command};
 use report::compare::{compare, page, svg, text};
 use std::path::PathBuf;
 use study::{StudyRecord, write_file};

@@ -1,8 +1,6 @@
 //! `optimize completions`: completion scripts for shells.
 
-use crate::command::{self, Output};
-use crate::context::Context;
-use crate::failure::Failure;
+use crate::{Context, Failure, Output, command};
 use clap_complete::Shell;
 
 /// Print a completion script for a shell

@@ -1,13 +1,11 @@
 //! `optimize config`: prints the settings in effect in this folder.
 
-use crate::command::{self, Output};
-use crate::context::Context;
-use crate::failure::Failure;
 use crate::layout::lines;
 use crate::project::{PROJECT_FILE, Project, Settings, exists};
 use crate::setup::files::robot;
 use crate::setup::request::{DEFAULT_ROBOT, DEFAULT_SPACE};
 use crate::setup::task::{read_space, read_task};
+use crate::{Context, Failure, Output, command};
 use serde_json::json;
 
 /// Print the settings of finger-opt.toml in this folder or above

@@ -1,19 +1,14 @@
 //! `optimize evaluate`: simulates the tolerance window of one finger.
 
-use crate::command::{self, Output};
-use crate::context::{Context, not_stopped};
-use crate::failure::Failure;
 use crate::layout;
 use crate::setup::finger::{ChosenFinger, FingerRequest, usage};
+use crate::setup::measured;
 use crate::setup::repeat::{RepeatRequest, bands_text, serialize_bands};
 use crate::setup::request::SetupRequest;
-use crate::setup::{Setup, measured};
+use crate::{Context, Failure, Output, Setup, command, not_stopped};
 use calibration::experiments::Experiment;
-use insertion::evaluation::robustness::Plan;
 use insertion::evaluation::robustness::repeat::Bands;
-use insertion::evaluation::tolerance::Search;
-use insertion::evaluation::{Evaluation, grid_mm};
-use insertion::outcome::Outcome;
+use insertion::{Evaluation, Outcome, Plan, Search, grid_mm};
 use report::answer::lines;
 use report::answer::words::{self, mm, number};
 use serde::{Serialize, Serializer};

@@ -1,21 +1,18 @@
 //! `optimize finger`: computes the stiffness of a finger from its ribs.
 
-use crate::command::{self, Output};
-use crate::context::Context;
-use crate::failure::Failure;
 use crate::layout::wrapped;
 use crate::setup::files::DEFAULT_FINGER;
 use crate::setup::finger::{InfillRequest, setting};
 use crate::setup::printed::{finger_file, predicted_stiffness};
 use crate::setup::words::parse_pair;
+use crate::{Context, Failure, Output, command};
 use finray::geometry::Geometry;
 use finray::mechanics::{self, FingerStiffness};
 use finray::picture;
 use finray::stiffness::PlanarStiffness;
 use input::units::{GRAM, MM, N_PER_MM};
 use insertion::finger::file::{infill, is_shape};
-use insertion::space::Design;
-use insertion::surrogate::Prediction;
+use insertion::{Design, Prediction};
 use nalgebra::Matrix3;
 use report::answer::lines;
 use report::text_table;

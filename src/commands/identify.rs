@@ -1,14 +1,11 @@
 //! `optimize identify`: identifies the parameters of a cell (friction, robot stiffness and more) from the robot's logs.
 
-use crate::command::{self, Output};
-use crate::context::{Context, not_stopped};
-use crate::failure::Failure;
 use crate::layout;
-use crate::setup::Setup;
 use crate::setup::bag::log_text;
 use crate::setup::bench::DEFAULT_PRIORS;
 use crate::setup::files::find;
 use crate::setup::request::SetupRequest;
+use crate::{Context, Failure, Output, Setup, command, not_stopped};
 use calibration::identify::check::Remark;
 use calibration::identify::frame::Frame;
 use calibration::identify::mount;
@@ -16,8 +13,8 @@ use calibration::identify::question::{Identification, IdentificationResult, Iden
 use calibration::identify::runs;
 use input::shipped::{PRIORS, Source};
 use input::units::N_PER_MM;
-use insertion::evaluation::cell::Priors;
-use insertion::robot::{Drive, Robot};
+use insertion::robot::Drive;
+use insertion::{Priors, Robot};
 use report::identify::{self as shown, html};
 use std::path::PathBuf;
 use study::write_file;

@@ -1,17 +1,13 @@
 //! `optimize levers`: one-at-a-time sensitivity of the range.
 
-use crate::command::{self, Output};
-use crate::context::Context;
-use crate::failure::Failure;
 use crate::layout;
 use crate::progress::cost;
-use crate::setup::Setup;
 use crate::setup::finger::{FingerRequest, usage};
 use crate::setup::request::SetupRequest;
 use crate::studies::summary::levers_json;
+use crate::{Context, Failure, Output, Setup, command};
 use analysis::levers::{LeverAnalysis, Levers};
-use insertion::space::Design;
-use insertion::surrogate::Prediction;
+use insertion::{Design, Prediction};
 use report::levers as output;
 use std::path::PathBuf;
 

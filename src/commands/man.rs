@@ -1,9 +1,7 @@
 //! `optimize man`: the manual page.
 
-use crate::command::{self, Output};
-use crate::context::Context;
-use crate::failure::Failure;
 use crate::manual;
+use crate::{Context, Failure, Output, command};
 
 /// Print the manual page
 #[derive(Debug, clap::Args)]

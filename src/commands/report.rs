@@ -1,9 +1,7 @@
 //! `optimize report`: writes the tables and plots of a study again.
 
-use crate::command::{self, Output};
-use crate::context::Context;
-use crate::failure::Failure;
 use crate::studies::report::{PAGE, rewrite};
+use crate::{Context, Failure, Output, command};
 use serde::Serialize;
 use std::path::PathBuf;
 

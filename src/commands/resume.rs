@@ -1,12 +1,9 @@
 //! `optimize resume`: continues a study.
 
-use crate::command::{self, Output};
-use crate::context::Context;
-use crate::failure::Failure;
-use crate::setup::Setup;
 use crate::setup::run::RunRequest;
 use crate::studies::open::OpenStudy;
 use crate::studies::output;
+use crate::{Context, Failure, Output, Setup, command};
 use std::path::PathBuf;
 use study::Study;
 

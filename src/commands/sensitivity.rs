@@ -1,13 +1,10 @@
 //! `optimize sensitivity`: Sobol indices of the inputs.
 
-use crate::command::{self, Output};
-use crate::context::{Context, not_stopped};
-use crate::failure::Failure;
 use crate::setup::request::SetupRequest;
 use crate::setup::words::WordParser;
+use crate::{Context, Failure, Output, command, not_stopped};
 use analysis::sensitivity::{evaluate, inputs};
-use insertion::evaluation::objective::Measure;
-use insertion::evaluation::template::DesignError;
+use insertion::{DesignError, Measure};
 use parameters::plan::saltelli::Sample;
 use rayon::prelude::*;
 use report::sensitivity::{self as shown, Factor, SensitivityResult};

@@ -1,11 +1,9 @@
 //! `optimize stiffness`: shows the stiffness model and its leave-one-out errors, or predicts for an infill.
 
-use crate::command::{self, Output};
-use crate::context::Context;
-use crate::failure::Failure;
 use crate::setup::files::{DEFAULT_FINGER, stiffness_data, surrogate};
 use crate::setup::finger::InfillRequest;
 use crate::setup::printed::finger_file;
+use crate::{Context, Failure, Output, command};
 use input::Check;
 use parameters::numbers::{self, DENSITY, DIRECTION};
 use report::stiffness as shown;

@@ -1,24 +1,21 @@
 //! `optimize --task T`: starts or continues a study.
 
-use crate::command::{self, Output};
-use crate::context::Context;
-use crate::failure::{Failure, within};
+use crate::failure::within;
 use crate::setup::bench::DEFAULT_PRIORS;
 use crate::setup::files::{DEFAULT_FINGER, find};
+use crate::setup::measured;
 use crate::setup::request::{DEFAULT_ROBOT, DEFAULT_SPACE, SetupRequest, several};
 use crate::setup::run::RunRequest;
 use crate::setup::words::WordParser;
-use crate::setup::{Setup, measured};
 use crate::studies::on_bench;
 use crate::studies::open::OpenStudy;
 use crate::studies::output;
+use crate::{Context, Failure, Output, Setup, command};
 use ask_tell::OptimizerKind;
 use input::shipped::PRIORS;
 use insertion::evaluation::INDIFFERENCE_MM;
-use insertion::evaluation::cell::Priors;
-use insertion::evaluation::objective::{
-    Aggregate, AggregateKind, Bound, Constraint, Measure, Objectives,
-};
+use insertion::evaluation::objective::{AggregateKind, Bound};
+use insertion::{Aggregate, Constraint, Measure, Objectives, Priors};
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use study::{

@@ -1,10 +1,8 @@
 //! `optimize tasks`: lists the shipped tasks, spaces and uncertainties.
 
-use crate::command::{self, Output};
-use crate::context::Context;
-use crate::failure::Failure;
 use crate::layout;
 use crate::setup::task::TaskFile;
+use crate::{Context, Failure, Output, command};
 use connector::seat::clearance;
 use input::shipped::{COMMERCIAL, SPACES, Shipped, Source, TASKS, UNCERTAINTIES};
 use input::units::MM;

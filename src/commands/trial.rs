@@ -1,8 +1,5 @@
 //! `optimize trial`: simulates one insertion.
 
-use crate::command::{self, Output};
-use crate::context::{Context, not_stopped};
-use crate::failure::Failure;
 use crate::layout;
 use crate::setup::driven::undriven;
 use crate::setup::film::FilmRequest;
@@ -11,11 +8,12 @@ use crate::setup::repeat::RepeatRequest;
 use crate::setup::request::SetupRequest;
 use crate::setup::task::outcome_json;
 use crate::setup::words::{parse_at_least_0, parse_number};
+use crate::{Context, Failure, Output, command, not_stopped};
 use calibration::identify::log::of_samples;
 use input::units::MM;
-use insertion::evaluation::grid_mm;
-use insertion::outcome::{Outcome, stop_words};
-use insertion::trial::{Grasp, Sample, Trial, picture};
+use insertion::outcome::stop_words;
+use insertion::trial::{Sample, picture};
+use insertion::{Grasp, Outcome, Trial, grid_mm};
 use report::answer::lines;
 use report::answer::words::number;
 use report::text_table;

@@ -1,8 +1,8 @@
 //! Requests of studies whose designs the caller evaluates.
 
 use super::open::OpenStudy;
+use crate::Failure;
 use crate::commands::{resume, study};
-use crate::failure::Failure;
 use crate::setup::run::RunRequest;
 use std::path::PathBuf;
 

@@ -9,11 +9,11 @@
 //! torn or damaged file fails its checksum; the design is then evaluated and written again.
 
 use super::provenance::SIMULATION_SOURCES;
-use super::seal::{seal, sha256_hex, unseal};
+use super::seal::{seal, unseal};
+use super::sha256_hex;
 use input::files::{self, LARGEST_OWN};
-use insertion::evaluation::Evaluation;
-use insertion::robot::Robot;
 use insertion::trial::engine::EngineRecord;
+use insertion::{Evaluation, Robot};
 use std::fmt::Debug;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;

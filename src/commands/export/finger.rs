@@ -1,11 +1,9 @@
 //! `optimize export finger`: exports a finger for printing.
 
-use crate::command::{self, Output};
-use crate::context::Context;
-use crate::failure::Failure;
 use crate::setup::film::extension;
 use crate::setup::printed::PrintRequest;
 use crate::studies::study_name;
+use crate::{Context, Failure, Output, command};
 use clap::ValueEnum;
 use connector::mesh::axes::value;
 use finray::export::prism::{Prism, PrismError};

@@ -1,12 +1,10 @@
 //! `optimize export mjcf`: writes the scene of a trial as MJCF.
 
-use crate::command::{self, Output};
-use crate::context::Context;
-use crate::failure::Failure;
 use crate::setup::finger::FingerRequest;
 use crate::setup::request::SetupRequest;
+use crate::{Context, Failure, Output, command};
 use contact::mjcf::{self, MjcfSettings};
-use insertion::evaluation::evaluator::Scenario;
+use insertion::Scenario;
 use insertion::trial::cell;
 use serde::Serialize;
 use std::path::PathBuf;

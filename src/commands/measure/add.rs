@@ -1,18 +1,16 @@
 //! `optimize measure add`: adds a line to a measurement file.
 
-use crate::command::{self, Output};
-use crate::context::Context;
-use crate::failure::Failure;
 use crate::setup::measured::BENCH_FILE;
 use crate::setup::task::{TaskFile, read_task};
 use crate::terminal::say;
+use crate::{Context, Failure, Output, command};
 use calibration::experiments::{
     COLUMNS, Experiment, NOT_MEASURABLE, Problems, appended, own_task, own_tasks, parse,
 };
 use input::InputError;
 use input::files::{LARGEST_INPUT, LockedFile};
 use input::shipped::{COMMERCIAL, MEASUREMENTS, TASKS};
-use insertion::space::{DENSITY_KEY, DIRECTION_KEY};
+use insertion::{DENSITY_KEY, DIRECTION_KEY};
 use serde_json::json;
 use std::io::{self, BufRead};
 use std::path::Path;

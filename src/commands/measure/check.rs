@@ -1,10 +1,8 @@
 //! `optimize measure check`: checks a measurement file.
 
-use crate::command::{self, Output};
-use crate::context::Context;
-use crate::failure::Failure;
 use crate::setup::measured::{self, BENCH_FILE};
 use crate::setup::task::read_task;
+use crate::{Context, Failure, Output, command};
 use calibration::experiments::Experiment;
 use serde_json::{Value, json};
 

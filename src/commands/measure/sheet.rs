@@ -1,16 +1,13 @@
 //! `optimize measure sheet`: sheet for measuring windows by hand.
 
-use crate::command::{self, Output};
 use crate::commands::trial;
-use crate::context::Context;
-use crate::failure::Failure;
 use crate::setup::finger::{FingerRequest, InfillRequest};
 use crate::setup::request::{SetupRequest, TaskSource};
 use crate::setup::task::read_task;
 use crate::setup::words::parse_pair;
-use insertion::evaluation::evaluator::Scenario;
-use insertion::outcome::Outcome;
+use crate::{Context, Failure, Output, command};
 use insertion::trial::picture;
+use insertion::{Outcome, Scenario};
 use report::sheet::{self, Picture};
 use std::collections::BTreeMap;
 use std::path::PathBuf;

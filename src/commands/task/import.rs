@@ -1,8 +1,6 @@
 //! `optimize task import`: creates a task from meshes of plug and socket.
 
-use crate::command::{self, Output};
-use crate::context::{Context, not_stopped};
-use crate::failure::{Failure, within};
+use crate::failure::within;
 use crate::layout::wrapped;
 use crate::setup::bodies::{PairRequest, parts};
 use crate::setup::files::{check_is_new, robot};
@@ -10,6 +8,7 @@ use crate::setup::mated::{MatedTask, left_out_json, mated};
 use crate::setup::request::RobotRequest;
 use crate::setup::task::{TaskCheck, TaskFile, read_task};
 use crate::setup::tune::{brief, chosen, tune_new};
+use crate::{Context, Failure, Output, command, not_stopped};
 use connector::body::width;
 use connector::mesh::axes::value;
 use connector::mesh::mated::{PairTask, check_handle};

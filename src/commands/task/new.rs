@@ -1,13 +1,11 @@
 //! `optimize task new`: creates a task file.
 
-use crate::command::{self, Output};
-use crate::context::Context;
-use crate::failure::Failure;
 use crate::layout::wrapped;
 use crate::setup::files::{check_is_new, robot};
 use crate::setup::request::RobotRequest;
 use crate::setup::task::{TaskCheck, TaskFile, read_task};
 use crate::setup::tune::{brief, chosen, tune_new};
+use crate::{Context, Failure, Output, command};
 use connector::draft::{self, Dimensions, Hole, Size};
 use connector::pins::Pins;
 use connector::tune::Tuned;

@@ -1,12 +1,10 @@
 //! `optimize task show`: prints a task file, or shows its parts in three dimensions.
 
-use crate::command::{self, Output};
-use crate::context::Context;
-use crate::failure::Failure;
 use crate::layout::wrote;
 use crate::setup::files::robot;
 use crate::setup::request::{DEFAULT_ROBOT, TaskSource};
 use crate::setup::task::{TaskFile, nominal_recording};
+use crate::{Context, Failure, Output, command};
 use report::replay::{self, Film};
 use std::path::PathBuf;
 use study::write_file;

@@ -5,8 +5,7 @@ mod plane;
 
 pub use plane::{Axes, Plane};
 
-use insertion::outcome::{FailureClass, Outcome};
-use insertion::space::Design;
+use insertion::{Design, FailureClass, Outcome};
 use parameters::plan::grid::{self, Node, TracedMap};
 use plane::{LIMIT, value};
 use serde::{Deserialize, Serialize};

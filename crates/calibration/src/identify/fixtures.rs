@@ -4,7 +4,7 @@ use super::log::{Log, LogSample};
 use ask_tell::normal::StandardNormal;
 use ask_tell::stream::stream;
 use input::units::{DEG, MM};
-use insertion::trial::Tcp;
+use insertion::Tcp;
 use nalgebra::Vector3;
 use rand::RngExt;
 

@@ -7,9 +7,7 @@
 
 use crate::finger::file::is_shape;
 use crate::finger::model::ComputedFingers;
-use crate::space::Design;
-use crate::stiffness::Measurement;
-use crate::surrogate::{Estimate, Prediction};
+use crate::{Design, Estimate, Measurement, Prediction};
 use ask_tell::statistics::Moments;
 use finray::mechanics::FingerStiffness;
 use input::InputError;

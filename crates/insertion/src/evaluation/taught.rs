@@ -6,9 +6,8 @@
 
 use super::tolerance::{self, OFFSET_LIMIT_STEPS, Search, offset};
 use super::{Evaluation, OffsetStep};
-use crate::finger::Finger;
-use crate::outcome::Outcome;
-use crate::trial::{Followed, Grasp, Grasped, Recording, Rig, Trial};
+use crate::trial::{Followed, Grasped};
+use crate::{Finger, Grasp, Outcome, Recording, Rig, Trial};
 use std::ops::Deref;
 use std::sync::atomic::AtomicBool;
 

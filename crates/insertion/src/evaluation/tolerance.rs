@@ -1,9 +1,8 @@
 //! Search for the tolerance window of a finger: the range of shifted starts that insert.
 
-use crate::evaluation::{Evaluation, OFFSET_STEP_MM, OffsetStep, Window};
-use crate::finger::Finger;
-use crate::outcome::Outcome;
-use crate::trial::{Grasp, Grasped, Rig, Trial};
+use crate::evaluation::OFFSET_STEP_MM;
+use crate::trial::Grasped;
+use crate::{Evaluation, Finger, Grasp, OffsetStep, Outcome, Rig, Trial, Window};
 use input::units::MM;
 
 /// Largest offset tried, in grid steps: 15 mm, well beyond the widest published window (9 mm).

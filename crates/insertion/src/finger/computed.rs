@@ -11,7 +11,7 @@
 //! is transformed to the same centre.
 
 use super::{Finger, Pad};
-use crate::surrogate::Prediction;
+use crate::Prediction;
 use crate::task::finger::Coupling;
 use finray::printed::PrintedFinger;
 use finray::stiffness::PlanarStiffness;

@@ -11,8 +11,7 @@
 //!    mated pose: class 2, "a failed search phase in which the plug is missed" (paper, Sec. "Failure Cases").
 //! 4. Otherwise the part entered and is not seated, whether fingers still touch it or not: class 3.
 
-use crate::outcome::{FailureClass, Outcome};
-use crate::task::{Stage, Task};
+use crate::{FailureClass, Outcome, Stage, Task};
 use contact::scene::Pose;
 use nalgebra::Vector3;
 

@@ -2,10 +2,8 @@
 
 use super::Rig;
 use super::run::{EngineRig, RigError};
-use crate::finger::Finger;
-use crate::robot::Robot;
-use crate::task::Task;
 use crate::value_name;
+use crate::{Finger, Robot, Task};
 use contact::Engine;
 use contact::direct::Direct;
 #[cfg(feature = "mujoco")]

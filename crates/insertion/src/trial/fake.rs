@@ -8,8 +8,7 @@
 //! gripper, and outward by the added clearance.
 
 use super::{Conditions, Followed, Grasp, Grasped, Rig, Trial};
-use crate::finger::Finger;
-use crate::outcome::{FailureClass, Outcome};
+use crate::{FailureClass, Finger, Outcome};
 use input::units::{DEG, MM, N_PER_MM};
 use std::sync::atomic::Ordering;
 

@@ -1,7 +1,6 @@
 //! Trial: one simulated insertion attempt.
 
-use crate::finger::Finger;
-use crate::outcome::Outcome;
+use crate::{Finger, Outcome};
 use contact::ContactPoint;
 use contact::scene::Pose;
 use input::units::MM;

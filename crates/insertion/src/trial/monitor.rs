@@ -1,7 +1,7 @@
 //! Monitors of an attempt: force, grip, and whether the leading edge is inside the opening.
 
 use super::classify::within;
-use crate::task::Task;
+use crate::Task;
 use crate::task::geometry::hull;
 use contact::scene::Pose;
 use input::units::MM;

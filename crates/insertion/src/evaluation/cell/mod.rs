@@ -5,7 +5,7 @@ mod applied;
 
 pub(super) use applied::change;
 
-use crate::robot::Robot;
+use crate::Robot;
 use input::{Check, InputError, read};
 use parameters::Parameter;
 use serde::{Deserialize, Serialize};

@@ -1,7 +1,7 @@
 //! Constraints on a design, for example `peak-force<=30`.
 
 use super::Measure;
-use crate::evaluation::Evaluation;
+use crate::Evaluation;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;

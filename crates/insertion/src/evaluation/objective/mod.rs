@@ -8,8 +8,8 @@ pub use aggregate::{Aggregate, AggregateKind};
 pub use constraint::{Bound, Constraint};
 pub use measure::Measure;
 
-use crate::evaluation::{Evaluation, OFFSET_STEP_MM};
-use crate::outcome::Outcome;
+use crate::evaluation::OFFSET_STEP_MM;
+use crate::{Evaluation, Outcome};
 use serde::{Deserialize, Serialize};
 use std::cmp::Ordering;
 use std::fmt;

@@ -4,7 +4,7 @@
 //! all repeats insert. Offsets between the two ends are not repeated.
 
 use super::repeat::Repeats;
-use crate::evaluation::{OffsetStep, Window, grid_mm};
+use crate::{OffsetStep, Window, grid_mm};
 use serde::{Deserialize, Serialize};
 
 /// Number of repeats at each end of the window.

@@ -1,9 +1,8 @@
 //! Repeats of a trial under small random changes of friction and start.
 
 use crate::evaluation::tolerance;
-use crate::evaluation::{OffsetStep, Window, grid_mm};
-use crate::outcome::Outcome;
-use crate::trial::{Conditions, Grasp, Grasped, Rig};
+use crate::trial::{Conditions, Grasped};
+use crate::{Grasp, OffsetStep, Outcome, Rig, Window, grid_mm};
 use ask_tell::stream::stream;
 use input::units::MM;
 use rand::RngExt;

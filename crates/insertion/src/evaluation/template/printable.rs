@@ -2,10 +2,9 @@
 
 use super::is_infill;
 use super::space::{each_corner, each_extreme};
-use crate::evaluation::evaluator::Evaluator;
-use crate::finger::file::{FingerFile, infill, is_shape};
-use crate::finger::model::{FingerSource, RCC_KEY, TILTING_KEY};
-use crate::space::{Space, Variable};
+use crate::finger::file::{infill, is_shape};
+use crate::finger::model::{RCC_KEY, TILTING_KEY};
+use crate::{Evaluator, FingerFile, FingerSource, Space, Variable};
 use finray::geometry::Geometry;
 use input::{Check, InputError};
 

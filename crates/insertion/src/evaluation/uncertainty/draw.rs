@@ -1,9 +1,8 @@
 //! Random draws of the errors of an insertion.
 
 use super::Errors;
-use crate::finger::Finger;
-use crate::surrogate::{Estimate, Prediction};
-use crate::trial::{Conditions, Grasp};
+use crate::trial::Conditions;
+use crate::{Estimate, Finger, Grasp, Prediction};
 use ask_tell::normal::StandardNormal;
 use ask_tell::stream::stream;
 use input::units::{DEG, MM};

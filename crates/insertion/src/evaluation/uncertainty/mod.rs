@@ -5,9 +5,8 @@ mod draw;
 
 pub use draw::{Draw, draws};
 
-use crate::evaluation::cell::Priors;
-use crate::evaluation::tolerance::Search;
 use crate::finger::file::is_shape;
+use crate::{Priors, Search};
 use input::shipped::UNCERTAINTIES;
 use input::units::read::{deg, mm, percent};
 use input::{Check, Document, InputError};

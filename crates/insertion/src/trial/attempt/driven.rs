@@ -1,8 +1,7 @@
 //! Trial with moves commanded by the caller, for learning a search strategy.
 
 use super::{Attempt, REST, Stop};
-use crate::outcome::Outcome;
-use crate::task::Stage;
+use crate::{Outcome, Stage};
 use input::units::{DEG, MM};
 use nalgebra::Vector3;
 

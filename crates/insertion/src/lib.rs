@@ -13,13 +13,13 @@
 pub mod arm;
 pub mod evaluation;
 pub mod finger;
-#[cfg(test)]
-mod fixtures;
 pub mod outcome;
 pub mod robot;
 pub mod stiffness;
 pub mod surrogate;
 pub mod task;
+#[cfg(any(test, feature = "fake-engine"))]
+pub mod tests;
 pub mod trial;
 
 pub use evaluation::cell::Priors;

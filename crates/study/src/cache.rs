@@ -92,8 +92,8 @@ pub(super) mod tests {
     use input::shipped::ROBOTS;
     use insertion::evaluation::tolerance::{Search, evaluate};
     use insertion::finger::Finger;
+    use insertion::tests::fake::FakeRig;
     use insertion::trial::engine::EngineKind;
-    use insertion::trial::fake::FakeRig;
 
     pub fn sound() -> Evaluation {
         evaluate(&FakeRig::default(), &Finger::new(3e3, 2e4), Search::Strides)

@@ -160,7 +160,7 @@ mod tests {
     use clap::ValueEnum;
     use input::units::N_PER_MM;
     use insertion::finger::Finger;
-    use insertion::trial::fake::{FakeRig, window_mm};
+    use insertion::tests::fake::{FakeRig, window_mm};
     use insertion::trial::{Conditions, Grasp};
     use parameters::plan::grid::STEPS_PER_UNIT;
     use std::sync::atomic::{AtomicUsize, Ordering};

@@ -76,8 +76,8 @@ fn scatter(fingers: &ComputedFingers, measured: &[Measurement]) -> Result<[f64; 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fixtures::{finger_file, predicted};
     use crate::space::{DENSITY_KEY, DIRECTION_KEY};
+    use crate::tests::fixtures::{finger_file, predicted};
     use input::units::N_PER_MM;
 
     const MODULUS: &str = "finger.material.modulus_gpa";

@@ -101,9 +101,9 @@ impl Grasped for Shifted<Box<dyn Grasped + '_>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fixtures::finger;
+    use crate::tests::fake::FakeRig;
+    use crate::tests::fixtures::finger;
     use crate::trial::NEVER;
-    use crate::trial::fake::FakeRig;
 
     #[test]
     fn the_taught_start_is_the_middle_of_the_nearest_window() {

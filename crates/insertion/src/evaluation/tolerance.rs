@@ -149,9 +149,9 @@ impl Evaluation {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fixtures::finger;
     use crate::outcome::FailureClass;
-    use crate::trial::fake::{Altered, FakeRig};
+    use crate::tests::fake::{Altered, FakeRig};
+    use crate::tests::fixtures::finger;
 
     #[test]
     fn both_searches_find_the_window_of_the_closed_form() {

@@ -61,7 +61,7 @@ impl FingerFile {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fixtures::{finger_file, refused};
+    use crate::tests::fixtures::{finger_file, refused};
     use input::units::MM;
 
     fn with(key: &str, value: f64) -> Result<PrintedFinger, InputError> {

@@ -101,8 +101,8 @@ pub fn classify(FinalState { seated, gripped, lost_in, entered }: FinalState) ->
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fixtures::task;
     use crate::task::Mated;
+    use crate::tests::fixtures::task;
     use FailureClass::*;
 
     /// 2 x 5 header: a pitch of 2.54 mm aside is deep and upright, and has missed.

@@ -115,7 +115,7 @@ impl Solid {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fixtures::task;
+    use crate::tests::fixtures::task;
     use input::shipped::TASKS;
     use input::units::MM;
 

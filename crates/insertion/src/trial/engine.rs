@@ -97,7 +97,7 @@ impl EngineKind {
     ) -> Result<Box<dyn Rig>, RigError> {
         #[cfg(feature = "fake-engine")]
         if self == EngineKind::Fake {
-            return Ok(Box::new(super::fake::FakeRig::from_environment()));
+            return Ok(Box::new(crate::tests::fake::FakeRig::from_environment()));
         }
         Ok(Box::new(EngineRig::with(task.clone(), robot, finger, self.build(step_factor))?))
     }

@@ -13,8 +13,6 @@ pub mod cell;
 mod classify;
 mod conditions;
 pub mod engine;
-#[cfg(any(test, feature = "fake-engine"))]
-pub mod fake;
 mod monitor;
 mod motion;
 pub mod picture;

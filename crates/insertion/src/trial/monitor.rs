@@ -106,7 +106,7 @@ impl LeadingEdge {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fixtures::task;
+    use crate::tests::fixtures::task;
     use input::units::DEG;
 
     fn inside(name: &str, at_mm: [f64; 3], tilt_deg: f64) -> bool {

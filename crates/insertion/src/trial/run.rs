@@ -192,7 +192,7 @@ mod tests {
     use super::super::Sample;
     use super::*;
     use crate::evaluation::tolerance::{Search, evaluate};
-    use crate::fixtures::{finger, refused, rig, robot, robot_file, task, task_file};
+    use crate::tests::fixtures::{finger, refused, rig, robot, robot_file, task, task_file};
     use contact::World;
     use contact::direct::Direct;
     use contact::scene::Scene;

@@ -103,7 +103,7 @@ impl Priors {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fixtures::{refused, robot, robot_file};
+    use crate::tests::fixtures::{refused, robot, robot_file};
     use input::shipped::{LEVERS, PRIORS};
 
     #[test]

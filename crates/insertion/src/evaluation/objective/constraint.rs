@@ -104,7 +104,7 @@ impl FromStr for Constraint {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fixtures::refused;
+    use crate::tests::fixtures::refused;
 
     #[test]
     fn violations_are_shares_of_the_limit() {

@@ -220,9 +220,9 @@ mod tests {
     use super::measure::tests::evaluation;
     use super::*;
     use crate::evaluation::tolerance::{self, Search};
-    use crate::fixtures::finger;
     use crate::outcome::FailureClass;
-    use crate::trial::fake::FakeRig;
+    use crate::tests::fake::FakeRig;
+    use crate::tests::fixtures::finger;
 
     fn goals(objectives: &str, constraints: &[&str], aggregate: Aggregate) -> Goals {
         Goals {

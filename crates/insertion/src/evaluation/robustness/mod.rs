@@ -127,8 +127,8 @@ mod tests {
     use super::*;
     use crate::evaluation::grid_mm;
     use crate::evaluation::tests::ranges;
-    use crate::fixtures::{finger, predicted, typical};
-    use crate::trial::fake::{FakeRig, window_mm};
+    use crate::tests::fake::{FakeRig, window_mm};
+    use crate::tests::fixtures::{finger, predicted, typical};
     use input::units::MM;
 
     /// Draws, from the shipped distribution, of a finger with 3 N/mm and this assembly stiffness, N/mm.

@@ -150,8 +150,8 @@ impl Bands {
 mod tests {
     use super::*;
     use crate::evaluation::tolerance::Search;
-    use crate::fixtures::finger;
-    use crate::trial::fake::FakeRig;
+    use crate::tests::fake::FakeRig;
+    use crate::tests::fixtures::finger;
 
     /// The lower end, -3.33 mm, moves by a tenth with friction; the upper one with the start alone.
     #[test]

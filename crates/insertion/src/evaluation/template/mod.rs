@@ -130,8 +130,8 @@ impl Template {
 mod tests {
     use super::*;
     use crate::finger::Finger;
-    use crate::fixtures::{refused, task_file, template};
     use crate::task::{Ending, TouchDetection};
+    use crate::tests::fixtures::{refused, task_file, template};
     use input::shipped::TASKS;
     use input::units::{DEG, MM};
     use std::collections::BTreeMap;

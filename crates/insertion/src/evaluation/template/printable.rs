@@ -59,7 +59,7 @@ mod tests {
         let file = SPACES.iter().find(|space| space.name == "finger").unwrap();
         assert!(file.text.contains(change[0]));
         let space = Space::parse(&file.text.replace(change[0], change[1]), file.file).unwrap();
-        check(&space, file.file, &crate::fixtures::finger_file())
+        check(&space, file.file, &crate::tests::fixtures::finger_file())
     }
 
     #[test]

@@ -112,7 +112,7 @@ impl Template {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fixtures::{robot, template};
+    use crate::tests::fixtures::{robot, template};
     use crate::trial::run::EngineRig;
     use contact::direct::Direct;
     use input::shipped::{ROBOTS, SPACES, TASKS};

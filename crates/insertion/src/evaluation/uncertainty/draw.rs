@@ -147,7 +147,7 @@ fn lognormal(relative: f64, z: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::evaluation::uncertainty::YawSpread;
-    use crate::fixtures::{predicted, typical};
+    use crate::tests::fixtures::{predicted, typical};
     use ask_tell::statistics::Moments;
     use parameters::numbers::{Kind, paths};
 

@@ -249,7 +249,7 @@ impl RawRobust {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fixtures::refused;
+    use crate::tests::fixtures::refused;
     use input::shipped::UNCERTAINTIES;
 
     #[test]

@@ -118,8 +118,8 @@ impl Driven {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fixtures::{finger, rig, task};
     use crate::outcome::FailureClass;
+    use crate::tests::fixtures::{finger, rig, task};
     use crate::trial::Rig;
 
     fn driven() -> Driven {

@@ -2,8 +2,7 @@
 //! or as JSON.
 
 use crate::context::Program;
-use crate::terminal;
-use crate::{Context, Failure};
+use crate::{Context, Failure, terminal};
 use clap::{Arg, ArgAction, ArgMatches, Args};
 use serde::Serialize;
 use serde_json::Value;

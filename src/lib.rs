@@ -45,3 +45,7 @@ pub use command::Output;
 pub use context::{Context, not_stopped};
 pub use failure::Failure;
 pub use setup::Setup;
+pub use setup::finger::{ChosenFinger, FingerRequest};
+pub use setup::request::{RobotRequest, SetupRequest, TaskSource};
+pub use setup::run::RunRequest;
+pub use setup::task::{TaskCheck, TaskFile, read_task};

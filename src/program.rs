@@ -1,12 +1,11 @@
 //! The program `optimize`: parses its arguments, applies the project file and runs one command.
 
-use crate::Failure;
 use crate::command::Command;
 use crate::commands::{COMMANDS, study};
 use crate::failure::plain_number_errors;
 use crate::project::{NO_CONFIG, OptionDefault, Project, with_defaults};
 use crate::terminal::say;
-use crate::{executor, help};
+use crate::{Failure, executor, help};
 use clap::ArgMatches;
 use std::ffi::OsString;
 use std::process::ExitCode;

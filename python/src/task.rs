@@ -2,7 +2,8 @@
 
 use crate::errors::{InputError, exception};
 use ask_tell::stream::stream;
-use finger_opt::setup::task::{TaskFile, read_space, read_task};
+use finger_opt::setup::task::read_space;
+use finger_opt::{TaskFile, read_task};
 use input::shipped::{PRIORS, ROBOTS, Source};
 use insertion::{Priors, Variable};
 use parameters::Parameter;

@@ -1,7 +1,6 @@
 //! `optimize ask-tell`: optimizers for any problem, over JSON lines.
 
-use crate::terminal;
-use crate::{Context, Failure, Output, command};
+use crate::{Context, Failure, Output, command, terminal};
 use ask_tell::protocol::{MAX_LINE_BYTES, Session};
 use std::io::{self, BufRead, Read};
 

@@ -4,8 +4,8 @@ use crate::layout::lines;
 use crate::project::{PROJECT_FILE, Project, Settings, exists};
 use crate::setup::files::robot;
 use crate::setup::request::{DEFAULT_ROBOT, DEFAULT_SPACE};
-use crate::setup::task::{read_space, read_task};
-use crate::{Context, Failure, Output, command};
+use crate::setup::task::read_space;
+use crate::{Context, Failure, Output, command, read_task};
 use serde_json::json;
 
 /// Print the settings of finger-opt.toml in this folder or above

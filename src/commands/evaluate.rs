@@ -1,11 +1,12 @@
 //! `optimize evaluate`: simulates the tolerance window of one finger.
 
-use crate::layout;
-use crate::setup::finger::{ChosenFinger, FingerRequest, usage};
+use crate::setup::finger::usage;
 use crate::setup::measured;
 use crate::setup::repeat::{RepeatRequest, bands_text, serialize_bands};
-use crate::setup::request::SetupRequest;
-use crate::{Context, Failure, Output, Setup, command, not_stopped};
+use crate::{
+    ChosenFinger, Context, Failure, FingerRequest, Output, Setup, SetupRequest, command, layout,
+    not_stopped,
+};
 use calibration::experiments::Experiment;
 use insertion::evaluation::robustness::repeat::Bands;
 use insertion::{Evaluation, Outcome, Plan, Search, grid_mm};

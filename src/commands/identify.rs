@@ -1,11 +1,9 @@
 //! `optimize identify`: identifies the parameters of a cell (friction, robot stiffness and more) from the robot's logs.
 
-use crate::layout;
 use crate::setup::bag::log_text;
 use crate::setup::bench::DEFAULT_PRIORS;
 use crate::setup::files::find;
-use crate::setup::request::SetupRequest;
-use crate::{Context, Failure, Output, Setup, command, not_stopped};
+use crate::{Context, Failure, Output, Setup, SetupRequest, command, layout, not_stopped};
 use calibration::identify::check::Remark;
 use calibration::identify::frame::Frame;
 use calibration::identify::mount;

@@ -1,11 +1,9 @@
 //! `optimize levers`: one-at-a-time sensitivity of the range.
 
-use crate::layout;
 use crate::progress::cost;
-use crate::setup::finger::{FingerRequest, usage};
-use crate::setup::request::SetupRequest;
+use crate::setup::finger::usage;
 use crate::studies::summary::levers_json;
-use crate::{Context, Failure, Output, Setup, command};
+use crate::{Context, Failure, FingerRequest, Output, Setup, SetupRequest, command, layout};
 use analysis::levers::{LeverAnalysis, Levers};
 use insertion::{Design, Prediction};
 use report::levers as output;

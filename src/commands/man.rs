@@ -1,7 +1,6 @@
 //! `optimize man`: the manual page.
 
-use crate::manual;
-use crate::{Context, Failure, Output, command};
+use crate::{Context, Failure, Output, command, manual};
 
 /// Print the manual page
 #[derive(Debug, clap::Args)]

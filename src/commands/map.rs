@@ -1,10 +1,10 @@
 //! `optimize map`: outcomes of insertions over two errors of the start.
 
-use crate::layout;
 use crate::progress::cost;
-use crate::setup::finger::{ChosenFinger, FingerRequest, usage};
-use crate::setup::request::SetupRequest;
-use crate::{Context, Failure, Output, Setup, command};
+use crate::setup::finger::usage;
+use crate::{
+    ChosenFinger, Context, Failure, FingerRequest, Output, Setup, SetupRequest, command, layout,
+};
 use analysis::map::{Axes, CaptureMap, Plane};
 use insertion::value_name;
 use insertion::{Design, Grasp, OffsetStep, Scenario};

@@ -1,9 +1,8 @@
 //! `optimize resume`: continues a study.
 
-use crate::setup::run::RunRequest;
 use crate::studies::open::OpenStudy;
 use crate::studies::output;
-use crate::{Context, Failure, Output, Setup, command};
+use crate::{Context, Failure, Output, RunRequest, Setup, command};
 use std::path::PathBuf;
 use study::Study;
 

@@ -1,8 +1,7 @@
 //! `optimize sensitivity`: Sobol indices of the inputs.
 
-use crate::setup::request::SetupRequest;
 use crate::setup::words::WordParser;
-use crate::{Context, Failure, Output, command, not_stopped};
+use crate::{Context, Failure, Output, SetupRequest, command, not_stopped};
 use analysis::sensitivity::{evaluate, inputs};
 use insertion::{DesignError, Measure};
 use parameters::plan::saltelli::Sample;

@@ -1,8 +1,6 @@
 //! `optimize tasks`: lists the shipped tasks, spaces and uncertainties.
 
-use crate::layout;
-use crate::setup::task::TaskFile;
-use crate::{Context, Failure, Output, command};
+use crate::{Context, Failure, Output, TaskFile, command, layout};
 use connector::seat::clearance;
 use input::shipped::{COMMERCIAL, SPACES, Shipped, Source, TASKS, UNCERTAINTIES};
 use input::units::MM;

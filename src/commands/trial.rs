@@ -1,14 +1,15 @@
 //! `optimize trial`: simulates one insertion.
 
-use crate::layout;
 use crate::setup::driven::undriven;
 use crate::setup::film::FilmRequest;
-use crate::setup::finger::{ChosenFinger, FingerRequest, usage};
+use crate::setup::finger::usage;
 use crate::setup::repeat::RepeatRequest;
-use crate::setup::request::SetupRequest;
 use crate::setup::task::outcome_json;
 use crate::setup::words::{parse_at_least_0, parse_number};
-use crate::{Context, Failure, Output, command, not_stopped};
+use crate::{
+    ChosenFinger, Context, Failure, FingerRequest, Output, SetupRequest, command, layout,
+    not_stopped,
+};
 use calibration::identify::log::of_samples;
 use input::units::MM;
 use insertion::outcome::stop_words;

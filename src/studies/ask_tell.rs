@@ -3,8 +3,7 @@
 use super::best_so_far::BestSoFar;
 use super::open::{Ended, OpenStudy, cached_evaluator, confirmer, hint, resume_hint};
 use super::optimizer::optimizer;
-use crate::setup::run::RunRequest;
-use crate::{Context, Failure, Setup, not_stopped};
+use crate::{Context, Failure, RunRequest, Setup, not_stopped};
 use ask_tell::Optimizer;
 use insertion::Measure;
 use insertion::trial::NEVER;

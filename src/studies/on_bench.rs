@@ -1,8 +1,8 @@
 //! Bench prediction of the fingers of a study with measurements.
 
 use crate::setup::bench::{CalibrationContext, folds};
-use crate::setup::run::{RunRequest, settings};
-use crate::{Context, Failure, Setup};
+use crate::setup::run::settings;
+use crate::{Context, Failure, RunRequest, Setup};
 use calibration::bench::Settings;
 use calibration::calibrate::Calibration;
 use calibration::simulation::Simulation;

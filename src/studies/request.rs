@@ -1,9 +1,8 @@
 //! Requests of studies whose designs the caller evaluates.
 
 use super::open::OpenStudy;
-use crate::Failure;
 use crate::commands::{resume, study};
-use crate::setup::run::RunRequest;
+use crate::{Failure, RunRequest};
 use std::path::PathBuf;
 
 /// Request to begin or resume a study.

@@ -1,9 +1,7 @@
 //! Windows of many fingers on one task.
 
 use crate::commands::evaluate::{Evaluated, Request as EvaluateRequest};
-use crate::setup::finger::FingerRequest;
-use crate::setup::run::RunRequest;
-use crate::{Failure, Setup, not_stopped};
+use crate::{Failure, FingerRequest, RunRequest, Setup, not_stopped};
 use insertion::{Plan, Search};
 use rayon::ThreadPool;
 use rayon::prelude::*;

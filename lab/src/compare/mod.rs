@@ -6,8 +6,7 @@ pub mod pairs;
 #[cfg(test)]
 mod tests;
 
-use finger_opt::Failure;
-use finger_opt::setup::task::read_task;
+use finger_opt::{Failure, read_task};
 use input::shipped::TASKS;
 use insertion::evaluation::tolerance;
 use insertion::task::finger::FingerModel;

@@ -1,8 +1,6 @@
 //! `optimize export mjcf`: writes the scene of a trial as MJCF.
 
-use crate::setup::finger::FingerRequest;
-use crate::setup::request::SetupRequest;
-use crate::{Context, Failure, Output, command};
+use crate::{Context, Failure, FingerRequest, Output, SetupRequest, command};
 use contact::mjcf::{self, MjcfSettings};
 use insertion::Scenario;
 use insertion::trial::cell;

@@ -1,9 +1,8 @@
 //! `optimize measure add`: adds a line to a measurement file.
 
 use crate::setup::measured::BENCH_FILE;
-use crate::setup::task::{TaskFile, read_task};
 use crate::terminal::say;
-use crate::{Context, Failure, Output, command};
+use crate::{Context, Failure, Output, TaskFile, command, read_task};
 use calibration::experiments::{
     COLUMNS, Experiment, NOT_MEASURABLE, Problems, appended, own_task, own_tasks, parse,
 };

@@ -1,8 +1,7 @@
 //! `optimize measure check`: checks a measurement file.
 
 use crate::setup::measured::{self, BENCH_FILE};
-use crate::setup::task::read_task;
-use crate::{Context, Failure, Output, command};
+use crate::{Context, Failure, Output, command, read_task};
 use calibration::experiments::Experiment;
 use serde_json::{Value, json};
 

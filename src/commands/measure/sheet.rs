@@ -1,11 +1,11 @@
 //! `optimize measure sheet`: sheet for measuring windows by hand.
 
 use crate::commands::trial;
-use crate::setup::finger::{FingerRequest, InfillRequest};
-use crate::setup::request::{SetupRequest, TaskSource};
-use crate::setup::task::read_task;
+use crate::setup::finger::InfillRequest;
 use crate::setup::words::parse_pair;
-use crate::{Context, Failure, Output, command};
+use crate::{
+    Context, Failure, FingerRequest, Output, SetupRequest, TaskSource, command, read_task,
+};
 use insertion::trial::picture;
 use insertion::{Outcome, Scenario};
 use report::sheet::{self, Picture};

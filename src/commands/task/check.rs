@@ -1,10 +1,7 @@
 //! `optimize task check`: checks a task file and its nominal start; if that fails, looks for a strategy that inserts.
 
-use crate::layout;
-use crate::setup::request::{RobotRequest, TaskSource};
-use crate::setup::task::TaskCheck;
 use crate::setup::tune::{brief, chosen, tried};
-use crate::{Context, Failure, Output, command};
+use crate::{Context, Failure, Output, RobotRequest, TaskCheck, TaskSource, command, layout};
 use connector::picture;
 use std::convert::Infallible;
 use std::path::PathBuf;

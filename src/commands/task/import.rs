@@ -5,10 +5,10 @@ use crate::layout::wrapped;
 use crate::setup::bodies::{PairRequest, parts};
 use crate::setup::files::{check_is_new, robot};
 use crate::setup::mated::{MatedTask, left_out_json, mated};
-use crate::setup::request::RobotRequest;
-use crate::setup::task::{TaskCheck, TaskFile, read_task};
 use crate::setup::tune::{brief, chosen, tune_new};
-use crate::{Context, Failure, Output, command, not_stopped};
+use crate::{
+    Context, Failure, Output, RobotRequest, TaskCheck, TaskFile, command, not_stopped, read_task,
+};
 use connector::body::width;
 use connector::mesh::axes::value;
 use connector::mesh::mated::{PairTask, check_handle};

@@ -2,10 +2,8 @@
 
 use crate::layout::wrapped;
 use crate::setup::files::{check_is_new, robot};
-use crate::setup::request::RobotRequest;
-use crate::setup::task::{TaskCheck, TaskFile, read_task};
 use crate::setup::tune::{brief, chosen, tune_new};
-use crate::{Context, Failure, Output, command};
+use crate::{Context, Failure, Output, RobotRequest, TaskCheck, TaskFile, command, read_task};
 use connector::draft::{self, Dimensions, Hole, Size};
 use connector::pins::Pins;
 use connector::tune::Tuned;

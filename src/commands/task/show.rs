@@ -2,9 +2,9 @@
 
 use crate::layout::wrote;
 use crate::setup::files::robot;
-use crate::setup::request::{DEFAULT_ROBOT, TaskSource};
-use crate::setup::task::{TaskFile, nominal_recording};
-use crate::{Context, Failure, Output, command};
+use crate::setup::request::DEFAULT_ROBOT;
+use crate::setup::task::nominal_recording;
+use crate::{Context, Failure, Output, TaskFile, TaskSource, command};
 use report::replay::{self, Film};
 use std::path::PathBuf;
 use study::write_file;

@@ -2,11 +2,9 @@
 
 use crate::layout::{lines, wrapped};
 use crate::setup::files::{check_is_new, robot};
-use crate::setup::request::{RobotRequest, TaskSource};
-use crate::setup::task::TaskFile;
 use crate::setup::tune::{outcome, ranges, step_json, tilt_text, tried, turned_text};
 use crate::setup::words::parse_number;
-use crate::{Context, Failure, Output, command, not_stopped};
+use crate::{Context, Failure, Output, RobotRequest, TaskFile, TaskSource, command, not_stopped};
 use connector::check::problems;
 use connector::tune::{Candidate, Effort, MAX_WINDOWS, Stage, Step, Tuned, Tuner, tune};
 use connector::{picture, rewrite};

@@ -7,7 +7,6 @@ use std::io::{self, BufRead, Read};
 /// Optimize anything: JSON lines on standard input and output
 #[derive(Debug, clap::Args)]
 #[command(
-    display_order = 40,
     after_help = "Example: optimize ask-tell < session.jsonl; docs/guide/python.md describes the lines"
 )]
 pub struct Request {}

@@ -19,7 +19,6 @@ use study::write_file;
 /// reports the accuracy: each measured finger is predicted without its measurement.
 #[derive(Debug, Clone, clap::Args)]
 #[command(
-    display_order = 20,
     mut_arg("tasks", several),
     after_help = "Example: optimize calibrate --task ket8 --measurements published --out results/ket8-bench"
 )]

@@ -7,10 +7,7 @@ use study::{StudyRecord, write_file};
 
 /// Compare optimizers over studies of the same task and objective
 #[derive(Debug, clap::Args)]
-#[command(
-    display_order = 15,
-    after_help = "Example: optimize compare results/usb-gp-seed0 results/usb-sobol-seed0"
-)]
+#[command(after_help = "Example: optimize compare results/usb-gp-seed0 results/usb-sobol-seed0")]
 pub struct Request {
     /// Folders of the studies; several seeds of an optimizer give median and quartiles
     #[arg(required = true, value_name = "DIR")]

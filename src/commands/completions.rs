@@ -5,7 +5,7 @@ use clap_complete::Shell;
 
 /// Print a completion script for a shell
 #[derive(Debug, clap::Args)]
-#[command(display_order = 91, after_help = "Example: optimize completions bash > optimize.bash")]
+#[command(after_help = "Example: optimize completions bash > optimize.bash")]
 pub struct Request {
     /// Shell
     shell: Shell,

@@ -13,7 +13,7 @@ use serde_json::json;
 /// The file sets task, robot, cell, measurements, space and threads for all commands in its folder and below. Options
 /// take precedence over it; --no-config ignores it. Seed and budget belong to one study and cannot be set there.
 #[derive(Debug, clap::Args)]
-#[command(display_order = 45, after_help = "Example: optimize config --json")]
+#[command(after_help = "Example: optimize config --json")]
 pub struct Request {}
 
 impl command::Request for Request {

@@ -21,7 +21,6 @@ use study::ByRibs;
 /// Simulate the tolerance window of one finger
 #[derive(Debug, Clone, Default, clap::Args)]
 #[command(
-    display_order = 10,
     override_usage = usage("evaluate"),
     after_help = "Example: optimize evaluate --task usb --density 20 --direction 10 --walk"
 )]

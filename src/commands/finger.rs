@@ -28,7 +28,6 @@ const LARGEST_LOAD_N: f64 = 1000.0;
 /// stiffness at the middle of the pad. Trials and studies use it with --finger-model computed.
 #[derive(Debug, Clone, clap::Args)]
 #[command(
-    display_order = 14,
     mut_arg("density", |density| density.required(true)),
     mut_arg("direction", |direction| direction.required(true)),
     after_help = "Example: optimize finger --density 20 --direction 20 --svg finger.svg"

@@ -26,7 +26,6 @@ const MAX_REMARKS: usize = 5;
 /// formulas, others are fitted to the curves; parameters that the logs do not determine are listed and unchanged.
 #[derive(Debug, Clone, Default, clap::Args)]
 #[command(
-    display_order = 21,
     after_help = "Example: optimize identify --task usb --runs runs.csv --out cell.toml --report identify.html"
 )]
 pub struct Request {

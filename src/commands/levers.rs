@@ -12,7 +12,6 @@ use std::path::PathBuf;
 /// Compare the infill with other ways to widen the window: tilt, strokes, grip, friction, robot
 #[derive(Debug, Clone, Default, clap::Args)]
 #[command(
-    display_order = 17,
     override_usage = usage("levers"),
     after_help = "Example: optimize levers --task rj45 --density 18 --direction 20 --svg rj45.svg"
 )]

@@ -19,7 +19,6 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// between two equal outcomes are filled in.
 #[derive(Debug, Clone, Default, clap::Args)]
 #[command(
-    display_order = 12,
     override_usage = usage("map"),
     after_help = "Example: optimize map --task usb --density 10 --direction 26 --axes y,yaw --svg map.svg"
 )]

@@ -32,10 +32,7 @@ pub enum Among {
 /// as well (codesign) it is a finger with a strategy; another strategy for a printed finger needs no new print. The file
 /// of measurements may be empty or missing.
 #[derive(Debug, Clone, clap::Args)]
-#[command(
-    display_order = 22,
-    after_help = "Example: optimize next --task ket8 --measurements bench.csv --count 2"
-)]
+#[command(after_help = "Example: optimize next --task ket8 --measurements bench.csv --count 2")]
 pub struct Request {
     /// One task and its measurements.
     #[command(flatten)]

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 
 /// Write the tables and plots of a study again
 #[derive(Debug, clap::Args)]
-#[command(display_order = 3, after_help = "Example: optimize report results/usb-gp-seed0")]
+#[command(after_help = "Example: optimize report results/usb-gp-seed0")]
 pub struct Request {
     /// Folder of the study
     pub dir: PathBuf,

@@ -8,7 +8,7 @@ use study::Study;
 
 /// Continue a study after an interruption or a crash
 #[derive(Debug, Clone, clap::Args)]
-#[command(display_order = 2, after_help = "Example: optimize resume results/usb-gp-seed0")]
+#[command(after_help = "Example: optimize resume results/usb-gp-seed0")]
 pub struct Request {
     /// Folder of the study
     pub dir: PathBuf,

@@ -7,7 +7,7 @@ use serde_json::json;
 
 /// List the shipped robots with the cells that they represent, and an example of a robot file
 #[derive(Debug, clap::Args)]
-#[command(display_order = 50, after_help = "Example: optimize robots --json")]
+#[command(after_help = "Example: optimize robots --json")]
 pub struct Request {}
 
 impl command::Request for Request {

@@ -12,10 +12,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Rank the inputs by their share of the variance: design, task, cell
 #[derive(Debug, Clone, clap::Args)]
-#[command(
-    display_order = 16,
-    after_help = "Example: optimize sensitivity --task usb --space codesign --svg usb.svg"
-)]
+#[command(after_help = "Example: optimize sensitivity --task usb --space codesign --svg usb.svg")]
 pub struct Request {
     /// One task, robot, space and finger model.
     #[command(flatten)]

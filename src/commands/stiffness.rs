@@ -13,7 +13,6 @@ use std::path::PathBuf;
 /// Show the stiffness model and its leave-one-out errors
 #[derive(Debug, Clone, clap::Args)]
 #[command(
-    display_order = 13,
     mut_arg("density", |density| density.hide(true)),
     mut_arg("direction", |direction| direction.hide(true)),
     after_help = "Example: optimize stiffness --stiffness-data mine.csv --svg model.svg"

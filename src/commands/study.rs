@@ -34,7 +34,6 @@ const DEFAULT_UNCERTAINTY: &str = "typical";
 /// Running the same command again continues the study. The name may be left out.
 #[derive(Debug, Clone, clap::Args)]
 #[command(
-    display_order = 1,
     mut_arg("tasks", several),
     after_help = "Example: optimize study --task usb --budget 200"
 )]

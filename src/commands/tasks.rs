@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 
 /// List tasks, spaces and uncertainties
 #[derive(Debug, clap::Args)]
-#[command(display_order = 51, after_help = "Example: optimize tasks --json")]
+#[command(after_help = "Example: optimize tasks --json")]
 pub struct Request {}
 
 /// Entry of the list as JSON and as a line of text.

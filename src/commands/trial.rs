@@ -36,7 +36,6 @@ fn offset(text: &str) -> Result<f64, String> {
 /// Simulate one insertion
 #[derive(Debug, Clone, Default, clap::Args)]
 #[command(
-    display_order = 11,
     override_usage = usage("trial"),
     after_help = "Example: optimize trial --task ket12 --density 10 --direction 0 --offset-mm 0.5 --svg trial.svg"
 )]

@@ -14,7 +14,6 @@ use study::write_file;
 /// sliders move the robot's command and close the jaws. MuJoCo is not needed for the export.
 #[derive(Debug, clap::Args)]
 #[command(
-    display_order = 1,
     mut_arg("engine", |engine| engine.hide(true)),
     after_help = "Example: optimize export mjcf --task usb --density 20 --direction 10 --out scene.xml"
 )]

@@ -17,7 +17,6 @@ use std::path::Path;
 /// Add a line to a measurement file, which is created if needed; without options it prompts for each value
 #[derive(Debug, clap::Args)]
 #[command(
-    display_order = 1,
     after_help = "Example: optimize measure add bench.csv --task ket8 --density 20 --direction 0 \
                   --range-mm 5.7 --failure-negative 3 --failure-positive 3"
 )]

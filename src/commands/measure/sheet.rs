@@ -29,10 +29,7 @@ type Example<'a> = (&'a str, (f64, f64), f64, Option<f64>);
 
 /// Write a printable sheet for measuring windows by hand
 #[derive(Debug, Clone, clap::Args)]
-#[command(
-    display_order = 3,
-    after_help = "Example: optimize measure sheet --task usb --finger 10,0 --out sheet.html"
-)]
+#[command(after_help = "Example: optimize measure sheet --task usb --finger 10,0 --out sheet.html")]
 pub struct Request {
     /// Task: ket8, ket12, rj45, usb, rj45_latch, usb_a, or the path of a task file
     #[arg(long, value_name = "NAME")]

@@ -11,10 +11,7 @@ use study::write_file;
 ///
 /// Exit code 0 if there is no problem and the plug inserts, 2 otherwise.
 #[derive(Debug, clap::Args)]
-#[command(
-    display_order = 3,
-    after_help = "Example: optimize task check usb-c.toml --svg usb-c.svg"
-)]
+#[command(after_help = "Example: optimize task check usb-c.toml --svg usb-c.svg")]
 pub struct Request {
     /// Task file, or the name of a shipped task
     #[arg(value_name = "FILE", value_parser = |name: &str| Ok::<_, Infallible>(TaskSource::single(name)))]

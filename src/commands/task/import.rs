@@ -35,7 +35,6 @@ const MAX_INLINE: usize = 30;
 /// these shapes.
 #[derive(Debug, Clone, clap::Args)]
 #[command(
-    display_order = 4,
     after_help = "Example: optimize task import --plug plug.stl --socket socket.stl --out mine.toml"
 )]
 pub struct Request {

@@ -27,7 +27,6 @@ const EXAMPLE: (&str, f64, &str) = ("8.25x2.4x6.65", 0.1, "12x6.5x20");
 /// Without any of these the task is a USB-C plug.
 #[derive(Debug, clap::Args)]
 #[command(
-    display_order = 1,
     after_help = "Example: optimize task new usb-c --plug 8.25x2.4x6.65 --clearance 0.1 --body 12x6.5x20"
 )]
 pub struct Request {

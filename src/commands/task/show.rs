@@ -14,7 +14,7 @@ use study::write_file;
 /// With --html a page shows plug, socket and fingertips in a view that can be rotated: the grip, the path of the
 /// search from the nominal start, and the pose at its end.
 #[derive(Debug, clap::Args)]
-#[command(display_order = 2, after_help = "Example: optimize task show usb > mine.toml")]
+#[command(after_help = "Example: optimize task show usb > mine.toml")]
 pub struct Request {
     /// Task: ket8, ket12, rj45, usb, rj45_latch, usb_a, or the path of a task file
     #[arg(value_name = "NAME")]

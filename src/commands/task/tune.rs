@@ -26,7 +26,7 @@ use study::write_file;
 /// this opening; then tilt, strokes, preload and push speed are optimized for the smallest range of a soft, a
 /// medium and a stiff finger. Exit code 1 if nothing inserts. Ctrl-C writes the best strategy so far.
 #[derive(Debug, Clone, clap::Args)]
-#[command(display_order = 5, after_help = "Example: optimize task tune mine.toml --svg mine.svg")]
+#[command(after_help = "Example: optimize task tune mine.toml --svg mine.svg")]
 pub struct Request {
     /// Task file, which is rewritten; or the name of a shipped task, with --out
     #[arg(value_name = "FILE")]

@@ -1,6 +1,6 @@
 //! Synthetic log for tests.
 
-use super::log::{Log, LogSample};
+use crate::identify::log::{Log, LogSample};
 use ask_tell::normal::StandardNormal;
 use ask_tell::stream::stream;
 use input::units::{DEG, MM};

@@ -66,7 +66,11 @@ pub fn source_sha256() -> &'static str {
 #[pyclass(frozen)]
 pub struct StudyRequest {
     study: AnyStudy,
+    /// Executor, if one was requested.
+    #[pyo3(get)]
     executor: Option<String>,
+    /// Whether progress is hidden.
+    #[pyo3(get)]
     quiet: bool,
     format: OutputFormat,
 }
@@ -115,18 +119,6 @@ impl StudyRequest {
         let (run, verbose) = study.run_options();
         let (executor, format) = (run.executor.clone(), OutputFormat { json, verbose });
         Ok(StudyRequest { study, executor, quiet, format })
-    }
-
-    /// Returns the executor, if one was requested.
-    #[getter]
-    fn executor(&self) -> Option<&str> {
-        self.executor.as_deref()
-    }
-
-    /// Returns whether progress is hidden.
-    #[getter]
-    fn quiet(&self) -> bool {
-        self.quiet
     }
 
     /// Writes the study without measuring and returns its folder.

@@ -1,9 +1,8 @@
 //! Interface of a command: a request, parsed from the command line or from keywords, and its output, printed as text
 //! or as JSON.
 
-use crate::context::{Context, Program};
-use crate::failure::Failure;
-use crate::terminal;
+use crate::context::Program;
+use crate::{Context, Failure, terminal};
 use clap::{Arg, ArgAction, ArgMatches, Args};
 use serde::Serialize;
 use serde_json::Value;

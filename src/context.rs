@@ -1,6 +1,6 @@
 //! Context of a running command: cancellation and progress.
 
-use crate::failure::Failure;
+use crate::Failure;
 use crate::progress::{Busy, Progress};
 use crate::terminal::{print, say};
 use input::files::shell_word;

@@ -1,7 +1,7 @@
 //! `--executor WHERE`: passes the command to the installed Python package, which contains the executors.
 
+use crate::Failure;
 use crate::context::watch;
-use crate::failure::Failure;
 use crate::python::{PYTHON, command, interpreter, output};
 use std::ffi::OsString;
 use std::process::{ChildStdin, ExitCode, Stdio};

@@ -3,7 +3,7 @@
 use calibration::experiments::Problems;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use input::{InputError, Place, Placed, RequestError};
-use insertion::evaluation::template::DesignError;
+use insertion::DesignError;
 use insertion::stiffness::SurrogateError;
 use report::ReportError;
 use std::error::Error;

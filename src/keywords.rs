@@ -1,8 +1,7 @@
 //! Commands called by another program, with their options as keywords.
 
 use crate::command::{CallResult, Command};
-use crate::context::Context;
-use crate::failure::Failure;
+use crate::{Context, Failure};
 use clap::{Arg, ArgAction, Args};
 use serde_json::{Map, Value};
 use std::ffi::OsString;

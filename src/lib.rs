@@ -40,3 +40,12 @@ pub mod python;
 pub mod setup;
 pub mod studies;
 pub mod terminal;
+
+pub use command::Output;
+pub use context::{Context, not_stopped};
+pub use failure::Failure;
+pub use setup::Setup;
+pub use setup::finger::{ChosenFinger, FingerRequest};
+pub use setup::request::{RobotRequest, SetupRequest, TaskSource};
+pub use setup::run::RunRequest;
+pub use setup::task::{TaskCheck, TaskFile, read_task};

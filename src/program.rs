@@ -2,10 +2,10 @@
 
 use crate::command::Command;
 use crate::commands::{COMMANDS, study};
-use crate::failure::{Failure, plain_number_errors};
+use crate::failure::plain_number_errors;
 use crate::project::{NO_CONFIG, OptionDefault, Project, with_defaults};
 use crate::terminal::say;
-use crate::{executor, help};
+use crate::{Failure, executor, help};
 use clap::ArgMatches;
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -14,10 +14,14 @@ use std::sync::LazyLock;
 /// The command of a study, whose name may be left out.
 const STUDY: Command = Command::of::<study::Request>(&["study"]);
 
-/// Groups of commands: position in the list, name, description, example.
-const GROUPS: [(usize, &str, &str, &str); 3] = [
+/// Order of the commands in the help, within each group as well.
+const ORDER: &str = "study resume report evaluate trial map stiffness mjcf finger compare sensitivity levers calibrate \
+                     identify next measure export ask-tell config robots tasks task add new show check import sheet \
+                     tune completions man";
+
+/// Groups of commands: name, description, example.
+const GROUPS: [(&str, &str, &str); 3] = [
     (
-        30,
         "measure",
         "Add measurements to a file, check such a file, or write a measuring sheet\n\n\
          docs/guide/measuring.md describes the file. Required are the task, the infill and one measured value, \
@@ -25,13 +29,11 @@ const GROUPS: [(usize, &str, &str, &str); 3] = [
         "Example: optimize measure check published",
     ),
     (
-        31,
         "export",
         "Write a scene for MuJoCo, or a finger for the printer",
         "Example: optimize export mjcf --task usb --density 20 --direction 10 --out scene.xml",
     ),
     (
-        52,
         "task",
         "Make, show and check a task",
         "Example: optimize task new usb-c --plug 8.25x2.4x6.65 --clearance 0.1 --body 12x6.5x20",
@@ -67,19 +69,21 @@ pub fn program() -> clap::Command {
             .filter(|command| matches!(command.path, [above @ .., _] if above == group));
         let mut commands: Vec<_> =
             members.map(|command| help::with_headings(command.clap())).collect();
-        commands.sort_by_key(clap::Command::get_display_order);
+        commands.sort_by_key(place);
         commands
     };
     let mut commands = commands_in(&[]);
-    commands.extend(GROUPS.map(|(order, name, about, example)| {
-        let group = clap::Command::new(name)
-            .display_order(order)
-            .subcommand_required(true)
-            .arg_required_else_help(true);
+    commands.extend(GROUPS.map(|(name, about, example)| {
+        let group = clap::Command::new(name).subcommand_required(true).arg_required_else_help(true);
         described(group, about, example).subcommands(commands_in(&[name]))
     }));
-    commands.sort_by_key(clap::Command::get_display_order);
+    commands.sort_by_key(place);
     root.subcommands(commands)
+}
+
+/// Returns the position of a command in the help.
+fn place(command: &clap::Command) -> Option<usize> {
+    ORDER.split(' ').position(|name| name == command.get_name())
 }
 
 fn described(command: clap::Command, about: &'static str, example: &'static str) -> clap::Command {

@@ -1,6 +1,6 @@
 //! Project file `finger-opt.toml`: defaults of options for the commands that are run in its folder or below.
 
-use crate::failure::Failure;
+use crate::Failure;
 use crate::setup::run::THREADS;
 use clap::Command;
 use input::files::shell_word;

@@ -1,6 +1,6 @@
 //! Standard output and standard error: control characters are escaped; on a terminal labels are coloured.
 
-use crate::failure::Failure;
+use crate::Failure;
 use clap::builder::styling::{AnsiColor, Style};
 use input::files::visible;
 use std::io::{self, IsTerminal, Write};

@@ -14,7 +14,7 @@ use insertion::finger::model::FingerSource;
 use insertion::outcome::{FailureClass, Outcome};
 use insertion::space::{Design, Space};
 use insertion::surrogate::{Estimate, Prediction};
-use insertion::trial::fake::FakeRig;
+use insertion::tests::fake::FakeRig;
 use proptest::prelude::*;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};

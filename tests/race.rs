@@ -15,8 +15,8 @@ use insertion::finger::Finger;
 use insertion::outcome::{FailureClass, Outcome};
 use insertion::space::Design;
 use insertion::surrogate::Prediction;
+use insertion::tests::fake::FakeRig;
 use insertion::trial::NEVER;
-use insertion::trial::fake::FakeRig;
 use proptest::prelude::*;
 use std::sync::atomic::AtomicBool;
 

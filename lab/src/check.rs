@@ -7,13 +7,9 @@ use clap::{Args, ValueEnum};
 use contact::Engine;
 use finger_opt::setup::files;
 use finger_opt::setup::request::DEFAULT_ROBOT;
-use insertion::evaluation::OffsetStep;
-use insertion::evaluation::tolerance::Search;
-use insertion::robot::Robot;
-use insertion::stiffness::{Measurement, designs, representative_designs};
-use insertion::task::Task;
-use insertion::trial::engine::EngineKind;
+use insertion::stiffness::{designs, representative_designs};
 use insertion::trial::run::EngineRig;
+use insertion::{EngineKind, Measurement, OffsetStep, Robot, Search, Task};
 use std::sync::Arc;
 
 /// Largest accepted shift of a window's end at half the time step, in grid steps of 0.1 mm.

@@ -5,11 +5,8 @@ use crate::{Failure, print};
 use clap::Args;
 use finger_opt::setup::files;
 use finger_opt::setup::request::DEFAULT_ROBOT;
-use insertion::evaluation::tolerance::Search;
-use insertion::finger::model::FingerSource;
 use insertion::stiffness::designs_by_rank;
-use insertion::task::Task;
-use insertion::trial::engine::EngineKind;
+use insertion::{EngineKind, FingerSource, Search, Task};
 
 /// Compare the outcomes of the same trials in two contact engines (check T9)
 ///

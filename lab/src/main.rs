@@ -9,7 +9,7 @@ mod compare;
 mod cross_check;
 
 use clap::{Parser, Subcommand};
-use finger_opt::failure::Failure;
+use finger_opt::Failure;
 use finger_opt::terminal::{print, say};
 use std::process::ExitCode;
 

@@ -1,9 +1,9 @@
 //! Commands, run without the interpreter's lock.
 
 use crate::errors::{InputError, StudyError, check_not_forked, exception, signalled};
+use finger_opt::Context;
 use finger_opt::command::CallResult;
 use finger_opt::commands::COMMANDS;
-use finger_opt::context::Context;
 use finger_opt::keywords;
 use pyo3::prelude::*;
 use serde_json::{Map, Value};

@@ -1,6 +1,6 @@
 //! Conversion of failures to exceptions, with the texts of the command line.
 
-use finger_opt::failure::Failure;
+use finger_opt::Failure;
 use input::Place;
 use pyo3::PyTypeInfo;
 use pyo3::exceptions::{PyKeyboardInterrupt, PyRuntimeError, PyValueError};

@@ -5,8 +5,6 @@ use crate::errors::{InputError, Refused, StudyError, exception};
 use ::study::{SOURCES, StudyRecord, evaluations_csv};
 use finger_opt::command::parse;
 use finger_opt::commands::resume;
-use finger_opt::context::Context;
-use finger_opt::failure::Failure;
 use finger_opt::keywords::request;
 use finger_opt::program::program;
 use finger_opt::studies::ask_tell::{self, NextStep, RejectedResult};
@@ -14,6 +12,7 @@ use finger_opt::studies::recommended;
 use finger_opt::studies::request::AnyStudy;
 use finger_opt::studies::summary::summary;
 use finger_opt::studies::text;
+use finger_opt::{Context, Failure};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use report::answer::Answer;
@@ -67,7 +66,11 @@ pub fn source_sha256() -> &'static str {
 #[pyclass(frozen)]
 pub struct StudyRequest {
     study: AnyStudy,
+    /// Executor, if one was requested.
+    #[pyo3(get)]
     executor: Option<String>,
+    /// Whether progress is hidden.
+    #[pyo3(get)]
     quiet: bool,
     format: OutputFormat,
 }
@@ -116,18 +119,6 @@ impl StudyRequest {
         let (run, verbose) = study.run_options();
         let (executor, format) = (run.executor.clone(), OutputFormat { json, verbose });
         Ok(StudyRequest { study, executor, quiet, format })
-    }
-
-    /// Returns the executor, if one was requested.
-    #[getter]
-    fn executor(&self) -> Option<&str> {
-        self.executor.as_deref()
-    }
-
-    /// Returns whether progress is hidden.
-    #[getter]
-    fn quiet(&self) -> bool {
-        self.quiet
     }
 
     /// Writes the study without measuring and returns its folder.

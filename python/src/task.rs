@@ -2,10 +2,10 @@
 
 use crate::errors::{InputError, exception};
 use ask_tell::stream::stream;
-use finger_opt::setup::task::{TaskFile, read_space, read_task};
+use finger_opt::setup::task::read_space;
+use finger_opt::{TaskFile, read_task};
 use input::shipped::{PRIORS, ROBOTS, Source};
-use insertion::evaluation::cell::Priors;
-use insertion::space::Variable;
+use insertion::{Priors, Variable};
 use parameters::Parameter;
 use pyo3::prelude::*;
 use rand::RngExt;

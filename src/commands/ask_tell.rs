@@ -1,16 +1,12 @@
 //! `optimize ask-tell`: optimizers for any problem, over JSON lines.
 
-use crate::command::{self, Output};
-use crate::context::Context;
-use crate::failure::Failure;
-use crate::terminal;
+use crate::{Context, Failure, Output, command, terminal};
 use ask_tell::protocol::{MAX_LINE_BYTES, Session};
 use std::io::{self, BufRead, Read};
 
 /// Optimize anything: JSON lines on standard input and output
 #[derive(Debug, clap::Args)]
 #[command(
-    display_order = 40,
     after_help = "Example: optimize ask-tell < session.jsonl; docs/guide/python.md describes the lines"
 )]
 pub struct Request {}

@@ -1,13 +1,11 @@
 //! `optimize calibrate`: predicts every finger on the bench.
 
-use crate::command::{self, Output};
-use crate::context::Context;
-use crate::failure::Failure;
 use crate::layout::wrapped;
 use crate::progress::cost;
 use crate::setup::bench::{BenchRequest, CalibrationRequest, Prepared, folds};
 use crate::setup::measured;
 use crate::setup::request::several;
+use crate::{Context, Failure, Output, command};
 use calibration::bench::Settings;
 use calibration::calibrate::Calibration;
 use calibration::table;
@@ -21,7 +19,6 @@ use study::write_file;
 /// reports the accuracy: each measured finger is predicted without its measurement.
 #[derive(Debug, Clone, clap::Args)]
 #[command(
-    display_order = 20,
     mut_arg("tasks", several),
     after_help = "Example: optimize calibrate --task ket8 --measurements published --out results/ket8-bench"
 )]

@@ -1,18 +1,13 @@
 //! `optimize compare`: studies of the same problem side by side.
 
-use crate::command::{self, Output};
-use crate::context::Context;
-use crate::failure::Failure;
+use crate::{Context, Failure, Output, command};
 use report::compare::{compare, page, svg, text};
 use std::path::PathBuf;
 use study::{StudyRecord, write_file};
 
 /// Compare optimizers over studies of the same task and objective
 #[derive(Debug, clap::Args)]
-#[command(
-    display_order = 15,
-    after_help = "Example: optimize compare results/usb-gp-seed0 results/usb-sobol-seed0"
-)]
+#[command(after_help = "Example: optimize compare results/usb-gp-seed0 results/usb-sobol-seed0")]
 pub struct Request {
     /// Folders of the studies; several seeds of an optimizer give median and quartiles
     #[arg(required = true, value_name = "DIR")]

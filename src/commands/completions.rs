@@ -1,13 +1,11 @@
 //! `optimize completions`: completion scripts for shells.
 
-use crate::command::{self, Output};
-use crate::context::Context;
-use crate::failure::Failure;
+use crate::{Context, Failure, Output, command};
 use clap_complete::Shell;
 
 /// Print a completion script for a shell
 #[derive(Debug, clap::Args)]
-#[command(display_order = 91, after_help = "Example: optimize completions bash > optimize.bash")]
+#[command(after_help = "Example: optimize completions bash > optimize.bash")]
 pub struct Request {
     /// Shell
     shell: Shell,

@@ -1,13 +1,11 @@
 //! `optimize config`: prints the settings in effect in this folder.
 
-use crate::command::{self, Output};
-use crate::context::Context;
-use crate::failure::Failure;
 use crate::layout::lines;
 use crate::project::{PROJECT_FILE, Project, Settings, exists};
 use crate::setup::files::robot;
 use crate::setup::request::{DEFAULT_ROBOT, DEFAULT_SPACE};
-use crate::setup::task::{read_space, read_task};
+use crate::setup::task::read_space;
+use crate::{Context, Failure, Output, command, read_task};
 use serde_json::json;
 
 /// Print the settings of finger-opt.toml in this folder or above
@@ -15,7 +13,7 @@ use serde_json::json;
 /// The file sets task, robot, cell, measurements, space and threads for all commands in its folder and below. Options
 /// take precedence over it; --no-config ignores it. Seed and budget belong to one study and cannot be set there.
 #[derive(Debug, clap::Args)]
-#[command(display_order = 45, after_help = "Example: optimize config --json")]
+#[command(after_help = "Example: optimize config --json")]
 pub struct Request {}
 
 impl command::Request for Request {

@@ -1,19 +1,15 @@
 //! `optimize evaluate`: simulates the tolerance window of one finger.
 
-use crate::command::{self, Output};
-use crate::context::{Context, not_stopped};
-use crate::failure::Failure;
-use crate::layout;
-use crate::setup::finger::{ChosenFinger, FingerRequest, usage};
+use crate::setup::finger::usage;
+use crate::setup::measured;
 use crate::setup::repeat::{RepeatRequest, bands_text, serialize_bands};
-use crate::setup::request::SetupRequest;
-use crate::setup::{Setup, measured};
+use crate::{
+    ChosenFinger, Context, Failure, FingerRequest, Output, Setup, SetupRequest, command, layout,
+    not_stopped,
+};
 use calibration::experiments::Experiment;
-use insertion::evaluation::robustness::Plan;
 use insertion::evaluation::robustness::repeat::Bands;
-use insertion::evaluation::tolerance::Search;
-use insertion::evaluation::{Evaluation, grid_mm};
-use insertion::outcome::Outcome;
+use insertion::{Evaluation, Outcome, Plan, Search, grid_mm};
 use report::answer::lines;
 use report::answer::words::{self, mm, number};
 use serde::{Serialize, Serializer};
@@ -25,7 +21,6 @@ use study::ByRibs;
 /// Simulate the tolerance window of one finger
 #[derive(Debug, Clone, Default, clap::Args)]
 #[command(
-    display_order = 10,
     override_usage = usage("evaluate"),
     after_help = "Example: optimize evaluate --task usb --density 20 --direction 10 --walk"
 )]

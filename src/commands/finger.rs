@@ -1,21 +1,18 @@
 //! `optimize finger`: computes the stiffness of a finger from its ribs.
 
-use crate::command::{self, Output};
-use crate::context::Context;
-use crate::failure::Failure;
 use crate::layout::wrapped;
 use crate::setup::files::DEFAULT_FINGER;
 use crate::setup::finger::{InfillRequest, setting};
 use crate::setup::printed::{finger_file, predicted_stiffness};
 use crate::setup::words::parse_pair;
+use crate::{Context, Failure, Output, command};
 use finray::geometry::Geometry;
 use finray::mechanics::{self, FingerStiffness};
 use finray::picture;
 use finray::stiffness::PlanarStiffness;
 use input::units::{GRAM, MM, N_PER_MM};
 use insertion::finger::file::{infill, is_shape};
-use insertion::space::Design;
-use insertion::surrogate::Prediction;
+use insertion::{Design, Prediction};
 use nalgebra::Matrix3;
 use report::answer::lines;
 use report::text_table;
@@ -31,7 +28,6 @@ const LARGEST_LOAD_N: f64 = 1000.0;
 /// stiffness at the middle of the pad. Trials and studies use it with --finger-model computed.
 #[derive(Debug, Clone, clap::Args)]
 #[command(
-    display_order = 14,
     mut_arg("density", |density| density.required(true)),
     mut_arg("direction", |direction| direction.required(true)),
     after_help = "Example: optimize finger --density 20 --direction 20 --svg finger.svg"

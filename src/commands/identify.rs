@@ -1,14 +1,9 @@
 //! `optimize identify`: identifies the parameters of a cell (friction, robot stiffness and more) from the robot's logs.
 
-use crate::command::{self, Output};
-use crate::context::{Context, not_stopped};
-use crate::failure::Failure;
-use crate::layout;
-use crate::setup::Setup;
 use crate::setup::bag::log_text;
 use crate::setup::bench::DEFAULT_PRIORS;
 use crate::setup::files::find;
-use crate::setup::request::SetupRequest;
+use crate::{Context, Failure, Output, Setup, SetupRequest, command, layout, not_stopped};
 use calibration::identify::check::Remark;
 use calibration::identify::frame::Frame;
 use calibration::identify::mount;
@@ -16,8 +11,8 @@ use calibration::identify::question::{Identification, IdentificationResult, Iden
 use calibration::identify::runs;
 use input::shipped::{PRIORS, Source};
 use input::units::N_PER_MM;
-use insertion::evaluation::cell::Priors;
-use insertion::robot::{Drive, Robot};
+use insertion::robot::Drive;
+use insertion::{Priors, Robot};
 use report::identify::{self as shown, html};
 use std::path::PathBuf;
 use study::write_file;
@@ -31,7 +26,6 @@ const MAX_REMARKS: usize = 5;
 /// formulas, others are fitted to the curves; parameters that the logs do not determine are listed and unchanged.
 #[derive(Debug, Clone, Default, clap::Args)]
 #[command(
-    display_order = 21,
     after_help = "Example: optimize identify --task usb --runs runs.csv --out cell.toml --report identify.html"
 )]
 pub struct Request {

@@ -1,24 +1,17 @@
 //! `optimize levers`: one-at-a-time sensitivity of the range.
 
-use crate::command::{self, Output};
-use crate::context::Context;
-use crate::failure::Failure;
-use crate::layout;
 use crate::progress::cost;
-use crate::setup::Setup;
-use crate::setup::finger::{FingerRequest, usage};
-use crate::setup::request::SetupRequest;
+use crate::setup::finger::usage;
 use crate::studies::summary::levers_json;
+use crate::{Context, Failure, FingerRequest, Output, Setup, SetupRequest, command, layout};
 use analysis::levers::{LeverAnalysis, Levers};
-use insertion::space::Design;
-use insertion::surrogate::Prediction;
+use insertion::{Design, Prediction};
 use report::levers as output;
 use std::path::PathBuf;
 
 /// Compare the infill with other ways to widen the window: tilt, strokes, grip, friction, robot
 #[derive(Debug, Clone, Default, clap::Args)]
 #[command(
-    display_order = 17,
     override_usage = usage("levers"),
     after_help = "Example: optimize levers --task rj45 --density 18 --direction 20 --svg rj45.svg"
 )]

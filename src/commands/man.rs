@@ -1,13 +1,10 @@
 //! `optimize man`: the manual page.
 
-use crate::command::{self, Output};
-use crate::context::Context;
-use crate::failure::Failure;
-use crate::manual;
+use crate::{Context, Failure, Output, command, manual};
 
 /// Print the manual page
 #[derive(Debug, clap::Args)]
-#[command(display_order = 92, after_help = "Example: optimize man > optimize.1")]
+#[command(after_help = "Example: optimize man > optimize.1")]
 pub struct Request {
     /// Output format
     #[arg(long, value_enum, hide = true, default_value_t)]

@@ -1,19 +1,13 @@
 //! `optimize map`: outcomes of insertions over two errors of the start.
 
-use crate::command::{self, Output};
-use crate::context::Context;
-use crate::failure::Failure;
-use crate::layout;
 use crate::progress::cost;
-use crate::setup::Setup;
-use crate::setup::finger::{ChosenFinger, FingerRequest, usage};
-use crate::setup::request::SetupRequest;
+use crate::setup::finger::usage;
+use crate::{
+    ChosenFinger, Context, Failure, FingerRequest, Output, Setup, SetupRequest, command, layout,
+};
 use analysis::map::{Axes, CaptureMap, Plane};
-use insertion::evaluation::OffsetStep;
-use insertion::evaluation::evaluator::Scenario;
-use insertion::space::Design;
-use insertion::trial::Grasp;
 use insertion::value_name;
+use insertion::{Design, Grasp, OffsetStep, Scenario};
 use parameters::plan::grid::MAX_TRIALS;
 use serde::Serialize;
 use std::path::PathBuf;
@@ -25,7 +19,6 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// between two equal outcomes are filled in.
 #[derive(Debug, Clone, Default, clap::Args)]
 #[command(
-    display_order = 12,
     override_usage = usage("map"),
     after_help = "Example: optimize map --task usb --density 10 --direction 26 --axes y,yaw --svg map.svg"
 )]

@@ -1,19 +1,17 @@
 //! `optimize next`: the finger to print next.
 
-use crate::command::{self, Output};
-use crate::context::Context;
-use crate::failure::Failure;
 use crate::layout::wrapped;
 use crate::progress::cost;
 use crate::setup::bench::{BenchRequest, CalibrationRequest, Prepared, folds};
 use crate::setup::measured;
 use crate::setup::words::parse_at_least_0;
+use crate::{Context, Failure, Output, command};
 use ask_tell::stream::stream;
 use calibration::bench::Settings;
 use calibration::calibrate::leave_one_out;
 use calibration::next::{Advice, Fingers, advise};
 use input::shipped::Source;
-use insertion::space::Design;
+use insertion::Design;
 use insertion::stiffness::designs;
 use report::answer::words::design;
 use serde::Serialize;
@@ -34,10 +32,7 @@ pub enum Among {
 /// as well (codesign) it is a finger with a strategy; another strategy for a printed finger needs no new print. The file
 /// of measurements may be empty or missing.
 #[derive(Debug, Clone, clap::Args)]
-#[command(
-    display_order = 22,
-    after_help = "Example: optimize next --task ket8 --measurements bench.csv --count 2"
-)]
+#[command(after_help = "Example: optimize next --task ket8 --measurements bench.csv --count 2")]
 pub struct Request {
     /// One task and its measurements.
     #[command(flatten)]

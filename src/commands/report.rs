@@ -1,15 +1,13 @@
 //! `optimize report`: writes the tables and plots of a study again.
 
-use crate::command::{self, Output};
-use crate::context::Context;
-use crate::failure::Failure;
 use crate::studies::report::{PAGE, rewrite};
+use crate::{Context, Failure, Output, command};
 use serde::Serialize;
 use std::path::PathBuf;
 
 /// Write the tables and plots of a study again
 #[derive(Debug, clap::Args)]
-#[command(display_order = 3, after_help = "Example: optimize report results/usb-gp-seed0")]
+#[command(after_help = "Example: optimize report results/usb-gp-seed0")]
 pub struct Request {
     /// Folder of the study
     pub dir: PathBuf,

@@ -1,18 +1,14 @@
 //! `optimize resume`: continues a study.
 
-use crate::command::{self, Output};
-use crate::context::Context;
-use crate::failure::Failure;
-use crate::setup::Setup;
-use crate::setup::run::RunRequest;
 use crate::studies::open::OpenStudy;
 use crate::studies::output;
+use crate::{Context, Failure, Output, RunRequest, Setup, command};
 use std::path::PathBuf;
 use study::Study;
 
 /// Continue a study after an interruption or a crash
 #[derive(Debug, Clone, clap::Args)]
-#[command(display_order = 2, after_help = "Example: optimize resume results/usb-gp-seed0")]
+#[command(after_help = "Example: optimize resume results/usb-gp-seed0")]
 pub struct Request {
     /// Folder of the study
     pub dir: PathBuf,

@@ -1,15 +1,13 @@
 //! `optimize robots`: lists robots and their cells.
 
-use crate::command::{self, Output};
-use crate::context::Context;
-use crate::failure::Failure;
 use crate::layout::{lines, wrapped};
 use crate::setup::robots::{CellRobot, robots};
+use crate::{Context, Failure, Output, command};
 use serde_json::json;
 
 /// List the shipped robots with the cells that they represent, and an example of a robot file
 #[derive(Debug, clap::Args)]
-#[command(display_order = 50, after_help = "Example: optimize robots --json")]
+#[command(after_help = "Example: optimize robots --json")]
 pub struct Request {}
 
 impl command::Request for Request {

@@ -1,13 +1,9 @@
 //! `optimize sensitivity`: Sobol indices of the inputs.
 
-use crate::command::{self, Output};
-use crate::context::{Context, not_stopped};
-use crate::failure::Failure;
-use crate::setup::request::SetupRequest;
 use crate::setup::words::WordParser;
+use crate::{Context, Failure, Output, SetupRequest, command, not_stopped};
 use analysis::sensitivity::{evaluate, inputs};
-use insertion::evaluation::objective::Measure;
-use insertion::evaluation::template::DesignError;
+use insertion::{DesignError, Measure};
 use parameters::plan::saltelli::Sample;
 use rayon::prelude::*;
 use report::sensitivity::{self as shown, Factor, SensitivityResult};
@@ -16,10 +12,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Rank the inputs by their share of the variance: design, task, cell
 #[derive(Debug, Clone, clap::Args)]
-#[command(
-    display_order = 16,
-    after_help = "Example: optimize sensitivity --task usb --space codesign --svg usb.svg"
-)]
+#[command(after_help = "Example: optimize sensitivity --task usb --space codesign --svg usb.svg")]
 pub struct Request {
     /// One task, robot, space and finger model.
     #[command(flatten)]

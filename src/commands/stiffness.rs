@@ -1,11 +1,9 @@
 //! `optimize stiffness`: shows the stiffness model and its leave-one-out errors, or predicts for an infill.
 
-use crate::command::{self, Output};
-use crate::context::Context;
-use crate::failure::Failure;
 use crate::setup::files::{DEFAULT_FINGER, stiffness_data, surrogate};
 use crate::setup::finger::InfillRequest;
 use crate::setup::printed::finger_file;
+use crate::{Context, Failure, Output, command};
 use input::Check;
 use parameters::numbers::{self, DENSITY, DIRECTION};
 use report::stiffness as shown;
@@ -15,7 +13,6 @@ use std::path::PathBuf;
 /// Show the stiffness model and its leave-one-out errors
 #[derive(Debug, Clone, clap::Args)]
 #[command(
-    display_order = 13,
     mut_arg("density", |density| density.hide(true)),
     mut_arg("direction", |direction| direction.hide(true)),
     after_help = "Example: optimize stiffness --stiffness-data mine.csv --svg model.svg"

@@ -1,24 +1,20 @@
 //! `optimize --task T`: starts or continues a study.
 
-use crate::command::{self, Output};
-use crate::context::Context;
-use crate::failure::{Failure, within};
+use crate::failure::within;
 use crate::setup::bench::DEFAULT_PRIORS;
 use crate::setup::files::{DEFAULT_FINGER, find};
-use crate::setup::request::{DEFAULT_ROBOT, DEFAULT_SPACE, SetupRequest, several};
-use crate::setup::run::RunRequest;
+use crate::setup::measured;
+use crate::setup::request::{DEFAULT_ROBOT, DEFAULT_SPACE, several};
 use crate::setup::words::WordParser;
-use crate::setup::{Setup, measured};
 use crate::studies::on_bench;
 use crate::studies::open::OpenStudy;
 use crate::studies::output;
+use crate::{Context, Failure, Output, RunRequest, Setup, SetupRequest, command};
 use ask_tell::OptimizerKind;
 use input::shipped::PRIORS;
 use insertion::evaluation::INDIFFERENCE_MM;
-use insertion::evaluation::cell::Priors;
-use insertion::evaluation::objective::{
-    Aggregate, AggregateKind, Bound, Constraint, Measure, Objectives,
-};
+use insertion::evaluation::objective::{AggregateKind, Bound};
+use insertion::{Aggregate, Constraint, Measure, Objectives, Priors};
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use study::{
@@ -38,7 +34,6 @@ const DEFAULT_UNCERTAINTY: &str = "typical";
 /// Running the same command again continues the study. The name may be left out.
 #[derive(Debug, Clone, clap::Args)]
 #[command(
-    display_order = 1,
     mut_arg("tasks", several),
     after_help = "Example: optimize study --task usb --budget 200"
 )]

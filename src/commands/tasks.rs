@@ -1,10 +1,6 @@
 //! `optimize tasks`: lists the shipped tasks, spaces and uncertainties.
 
-use crate::command::{self, Output};
-use crate::context::Context;
-use crate::failure::Failure;
-use crate::layout;
-use crate::setup::task::TaskFile;
+use crate::{Context, Failure, Output, TaskFile, command, layout};
 use connector::seat::clearance;
 use input::shipped::{COMMERCIAL, SPACES, Shipped, Source, TASKS, UNCERTAINTIES};
 use input::units::MM;
@@ -12,7 +8,7 @@ use serde_json::{Value, json};
 
 /// List tasks, spaces and uncertainties
 #[derive(Debug, clap::Args)]
-#[command(display_order = 51, after_help = "Example: optimize tasks --json")]
+#[command(after_help = "Example: optimize tasks --json")]
 pub struct Request {}
 
 /// Entry of the list as JSON and as a line of text.

@@ -1,21 +1,20 @@
 //! `optimize trial`: simulates one insertion.
 
-use crate::command::{self, Output};
-use crate::context::{Context, not_stopped};
-use crate::failure::Failure;
-use crate::layout;
 use crate::setup::driven::undriven;
 use crate::setup::film::FilmRequest;
-use crate::setup::finger::{ChosenFinger, FingerRequest, usage};
+use crate::setup::finger::usage;
 use crate::setup::repeat::{RepeatRequest, impossible_text};
-use crate::setup::request::SetupRequest;
 use crate::setup::task::outcome_json;
 use crate::setup::words::{parse_at_least_0, parse_number};
+use crate::{
+    ChosenFinger, Context, Failure, FingerRequest, Output, SetupRequest, command, layout,
+    not_stopped,
+};
 use calibration::identify::log::of_samples;
 use input::units::MM;
-use insertion::evaluation::grid_mm;
-use insertion::outcome::{Outcome, stop_words};
-use insertion::trial::{Grasp, Sample, Trial, picture};
+use insertion::outcome::stop_words;
+use insertion::trial::{Sample, picture};
+use insertion::{Grasp, Outcome, Trial, grid_mm};
 use report::answer::lines;
 use report::answer::words::number;
 use report::text_table;
@@ -37,7 +36,6 @@ fn offset(text: &str) -> Result<f64, String> {
 /// Simulate one insertion
 #[derive(Debug, Clone, Default, clap::Args)]
 #[command(
-    display_order = 11,
     override_usage = usage("trial"),
     after_help = "Example: optimize trial --task ket12 --density 10 --direction 0 --offset-mm 0.5 --svg trial.svg"
 )]

@@ -3,12 +3,9 @@
 use super::best_so_far::BestSoFar;
 use super::open::{Ended, OpenStudy, cached_evaluator, confirmer, hint, resume_hint};
 use super::optimizer::optimizer;
-use crate::context::{Context, not_stopped};
-use crate::failure::Failure;
-use crate::setup::Setup;
-use crate::setup::run::RunRequest;
+use crate::{Context, Failure, RunRequest, Setup, not_stopped};
 use ask_tell::Optimizer;
-use insertion::evaluation::objective::Measure;
+use insertion::Measure;
 use insertion::trial::NEVER;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;

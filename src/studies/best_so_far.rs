@@ -1,7 +1,7 @@
 //! Best designs of a study so far, for its progress.
 
 use ask_tell::pareto::Archive;
-use insertion::evaluation::objective::Goals;
+use insertion::Goals;
 use study::{Recorded, Study};
 
 /// Pareto front of the feasible designs so far; with a single objective, its best design.

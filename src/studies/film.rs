@@ -1,14 +1,10 @@
 //! Films at the ends of the recommended design's window: the last trial that inserts and the first that fails.
 
-use crate::failure::Failure;
-use crate::setup::Setup;
 use crate::setup::film::start_label;
-use insertion::evaluation::template::Template;
+use crate::{Failure, Setup};
 use insertion::evaluation::tolerance::offset;
-use insertion::evaluation::{Evaluation, OffsetStep, grid_mm};
-use insertion::outcome::Outcome;
-use insertion::space::Design;
-use insertion::trial::{Grasp, picture};
+use insertion::trial::picture;
+use insertion::{Design, Evaluation, Grasp, OffsetStep, Outcome, Template, grid_mm};
 use rayon::ThreadPool;
 use report::answer::Answer;
 use report::replay::{self, ENDS, Film, pair_file, poster_file};

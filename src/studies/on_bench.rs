@@ -1,15 +1,13 @@
 //! Bench prediction of the fingers of a study with measurements.
 
-use crate::context::Context;
-use crate::failure::Failure;
-use crate::setup::Setup;
 use crate::setup::bench::{CalibrationContext, folds};
-use crate::setup::run::{RunRequest, settings};
+use crate::setup::run::settings;
+use crate::{Context, Failure, RunRequest, Setup};
 use calibration::bench::Settings;
 use calibration::calibrate::Calibration;
 use calibration::simulation::Simulation;
 use calibration::table::{self, bench_prediction, by_range};
-use insertion::evaluation::objective::{Measure, Objectives};
+use insertion::{Measure, Objectives};
 use rayon::ThreadPool;
 use study::{BENCH_FILE, Study, StudyConfig, write_analysis, write_own_file};
 

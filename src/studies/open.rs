@@ -2,23 +2,17 @@
 
 use super::optimizer::optimizer;
 use super::{film, on_bench, printable, report, unusable};
-use crate::context::Context;
-use crate::failure::{Failure, bad_config};
+use crate::failure::bad_config;
 use crate::progress::cost;
-use crate::setup::Setup;
-use crate::setup::run::RunRequest;
 use crate::setup::task::nominal_start;
+use crate::{Context, Failure, RunRequest, Setup};
 use ::report::answer::Answer;
 use ::report::answer::command::repair;
 use ::report::answer::words::outcome;
 use input::files::shell_word;
-use insertion::evaluation::evaluator::Evaluator;
-use insertion::evaluation::robustness::Plan;
-use insertion::evaluation::template::Template;
-use insertion::evaluation::tolerance::Search;
-use insertion::outcome::{Outcome, stop_words};
-use insertion::task::StartRule;
+use insertion::outcome::stop_words;
 use insertion::trial::NEVER;
+use insertion::{Evaluator, Outcome, Plan, Search, StartRule, Template};
 use parameters::label;
 use rayon::ThreadPool;
 use std::path::PathBuf;

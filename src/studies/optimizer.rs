@@ -1,12 +1,10 @@
 //! Optimizer of a study: its search space and prior knowledge.
 
-use crate::failure::{Failure, bad_config};
-use crate::setup::Setup;
+use crate::failure::bad_config;
+use crate::{Failure, Setup};
 use ask_tell::{Grid, GridPoint, Optimizer, OptimizerKind, Polished, SeededOptimizer};
 use insertion::finger::file::is_shape;
-use insertion::finger::model::FingerSource;
-use insertion::space::{Design, Variable};
-use insertion::stiffness::Measurement;
+use insertion::{Design, FingerSource, Measurement, Variable};
 use study::StudyConfig;
 
 /// Returns the optimizer of a study.

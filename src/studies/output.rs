@@ -3,9 +3,7 @@
 use super::open::OpenStudy;
 use super::summary::summary;
 use super::text;
-use crate::command::Output;
-use crate::context::Context;
-use crate::failure::Failure;
+use crate::{Context, Failure, Output};
 use report::PostAnalysis;
 use report::answer::Answer;
 

@@ -1,11 +1,11 @@
 //! Printer files of the recommended finger of a study.
 
-use crate::failure::Failure;
+use crate::Failure;
 use finray::export::prism::Prism;
 use finray::export::sheet::{self, SheetData};
 use finray::export::{slicer, title};
 use finray::mechanics;
-use insertion::evaluation::evaluator::Evaluator;
+use insertion::Evaluator;
 use report::answer::Answer;
 use report::printer::{ORCA_PROJECT, PROJECT, SHEET, SURFACE, THREE_MF, recommended};
 use std::path::Path;

@@ -1,6 +1,6 @@
 //! Recommendation and answer of a study as JSON.
 
-use insertion::evaluation::objective::{Measure, Objectives};
+use insertion::{Measure, Objectives};
 use report::answer::{Answer, Ties, Trust, command, expectation, lines};
 use serde_json::{Map, Value, json};
 use std::path::Path;

@@ -1,7 +1,7 @@
 //! Tables, plots and report page of a study.
 
 use super::{analysis, unusable};
-use crate::failure::Failure;
+use crate::Failure;
 use crate::setup::surrogate_of;
 use input::files::{self, LARGEST_OWN};
 use insertion::surrogate::Model;

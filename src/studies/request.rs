@@ -2,8 +2,7 @@
 
 use super::open::OpenStudy;
 use crate::commands::{resume, study};
-use crate::failure::Failure;
-use crate::setup::run::RunRequest;
+use crate::{Failure, RunRequest};
 use std::path::PathBuf;
 
 /// Request to begin or resume a study.

@@ -1,13 +1,8 @@
 //! Windows of many fingers on one task.
 
 use crate::commands::evaluate::{Evaluated, Request as EvaluateRequest};
-use crate::context::not_stopped;
-use crate::failure::Failure;
-use crate::setup::Setup;
-use crate::setup::finger::FingerRequest;
-use crate::setup::run::RunRequest;
-use insertion::evaluation::robustness::Plan;
-use insertion::evaluation::tolerance::Search;
+use crate::{Failure, FingerRequest, RunRequest, Setup, not_stopped};
+use insertion::{Plan, Search};
 use rayon::ThreadPool;
 use rayon::prelude::*;
 use std::sync::atomic::AtomicBool;

@@ -1,11 +1,9 @@
 //! Diagnosis of a study in which no design inserts at the nominal start.
 
-use crate::context::not_stopped;
-use crate::failure::Failure;
-use crate::setup::Setup;
+use crate::{Failure, Setup, not_stopped};
 use insertion::outcome::stop_words;
-use insertion::task::StartRule;
-use insertion::trial::{Grasp, picture};
+use insertion::trial::picture;
+use insertion::{Grasp, StartRule};
 use report::answer::words::{outcome, remedy};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;

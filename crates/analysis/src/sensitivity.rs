@@ -1,13 +1,12 @@
 //! Inputs of a variance-based sensitivity analysis (parameters of the search space and random errors of the cell), and
 //! the evaluation at given inputs.
 
-use insertion::evaluation::Evaluation;
-use insertion::evaluation::evaluator::Evaluator;
-use insertion::evaluation::template::{DesignError, Template};
-use insertion::evaluation::tolerance::{self, Search};
+use insertion::evaluation::tolerance;
 use insertion::evaluation::uncertainty::{Draw, Errors};
-use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design, Space, Variable};
-use insertion::trial::Grasp;
+use insertion::{
+    DENSITY_KEY, DIRECTION_KEY, Design, DesignError, Evaluation, Evaluator, Grasp, Search, Space,
+    Template, Variable,
+};
 use parameters::Parameter;
 use parameters::numbers::Kind;
 use std::sync::atomic::AtomicBool;

@@ -7,9 +7,7 @@ use ask_tell::SobolSequence;
 use ask_tell::gp::{FitEffort, Gp, fit};
 use ask_tell::process::distance2;
 use ask_tell::statistics::Moments;
-use insertion::evaluation::template::DesignError;
-use insertion::outcome::{FailureClass, Outcome};
-use insertion::space::{Design, Space, Variable};
+use insertion::{Design, DesignError, FailureClass, Outcome, Space, Variable};
 use rayon::prelude::*;
 use std::sync::atomic::Ordering;
 

@@ -2,8 +2,7 @@
 
 use ask_tell::statistics::{mean, spearman};
 use input::shipped::TASKS;
-use insertion::finger::model::FingerModelKind;
-use insertion::space::Design;
+use insertion::{Design, FingerModelKind};
 use serde::{Deserialize, Serialize};
 use study::StudyConfig;
 

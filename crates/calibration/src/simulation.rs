@@ -1,13 +1,9 @@
 //! Simulation of tolerance windows at given values of the unmeasured parameters.
 
 use input::units::MM;
-use insertion::evaluation::Evaluation;
-use insertion::evaluation::evaluator::{Evaluator, Scenario};
-use insertion::evaluation::robustness::Plan;
-use insertion::evaluation::template::{DesignError, Template};
-use insertion::evaluation::tolerance::Search;
-use insertion::outcome::Outcome;
-use insertion::space::Design;
+use insertion::{
+    Design, DesignError, Evaluation, Evaluator, Outcome, Plan, Scenario, Search, Template,
+};
 use parameters::Parameter;
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;

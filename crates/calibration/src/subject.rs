@@ -8,9 +8,8 @@ use crate::experiments::Experiment;
 use ask_tell::process::distance2;
 use ask_tell::statistics::Moments;
 use ask_tell::{Grid, GridPoint, SobolSequence};
-use insertion::evaluation::template::Template;
-use insertion::outcome::FailureClass;
-use insertion::space::{Design, Space, Variable, is_of_task};
+use insertion::space::is_of_task;
+use insertion::{Design, FailureClass, Space, Template, Variable};
 use parameters::Parameter;
 use std::collections::BTreeSet;
 

@@ -4,8 +4,7 @@ use super::calibrate::{Calibration, Coordinate, LeftOut, Prediction, TaskResult}
 use super::subject::Subject;
 use crate::experiments::Experiment;
 use ask_tell::statistics::{Moments, normal_cdf, pearson, quantile, sorted};
-use insertion::evaluation::Evaluation;
-use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design};
+use insertion::{DENSITY_KEY, DIRECTION_KEY, Design, Evaluation};
 use serde::Serialize;
 use serde_json::{Value, json};
 use study::{BenchEffort, BenchFinger, BenchPrediction, Provenance};

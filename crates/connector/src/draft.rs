@@ -6,12 +6,9 @@ use super::pins::Pins;
 use super::plan;
 use input::shown;
 use input::units::MM;
-use insertion::finger::Pad;
 use insertion::task::finger::FingerModel;
-use insertion::task::{
-    Friction, Grip, Hold, Limits, PadTorsion, Part, Plug, Solid, StartRule, Strategy, Success,
-    Task, geometry,
-};
+use insertion::task::{Friction, Grip, Hold, Limits, PadTorsion, Plug, Success, geometry};
+use insertion::{Pad, Part, Solid, StartRule, Strategy, Task};
 use nalgebra::Vector3;
 use parameters::numbers;
 use std::f64::consts::PI;

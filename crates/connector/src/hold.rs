@@ -3,8 +3,8 @@
 
 use super::body::{ConvexBody, clipped, extent, span, width};
 use input::units::MM;
-use insertion::finger::{Pad, ROOF_GAP};
-use insertion::task::Part;
+use insertion::finger::ROOF_GAP;
+use insertion::{Pad, Part};
 use nalgebra::Point3;
 
 /// Difference up to which positions of surfaces count as equal, m.

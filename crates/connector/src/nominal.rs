@@ -3,9 +3,9 @@
 use super::body::ConvexBody;
 use super::seat;
 use input::units::{DEG, MM};
-use insertion::outcome::{FailureClass, Outcome, STOP_REMEDY};
-use insertion::task::{Stage, Task};
-use insertion::trial::{PhaseEnd, Trial};
+use insertion::outcome::STOP_REMEDY;
+use insertion::trial::PhaseEnd;
+use insertion::{FailureClass, Outcome, Stage, Task, Trial};
 
 /// Explains the outcome of a trial in plain words, with advice.
 pub fn explain(task: &Task, trial: &Trial) -> String {

@@ -5,9 +5,8 @@ use super::seat::{self, Seat, TaskBodies, Waypoint, section};
 use contact::scene::{Geom, Pose};
 use drawing::{Drawing, Font, Style, View};
 use input::units::MM;
-use insertion::finger::Pad;
 use insertion::task::geometry::convex_outline;
-use insertion::task::{Part, Task};
+use insertion::{Pad, Part, Task};
 use nalgebra::{Point2, Point3, Vector2};
 
 /// Size of a panel with the gap to the next one, pixels.

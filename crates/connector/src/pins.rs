@@ -2,7 +2,7 @@
 
 use super::draft::{Size, block, separated_by_x};
 use input::units::MM;
-use insertion::task::Part;
+use insertion::Part;
 use parameters::numbers;
 
 /// Largest number of pins of a header.

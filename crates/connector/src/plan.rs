@@ -11,10 +11,8 @@ use super::hold::pad_contacts;
 use super::seat::{self, Seat, TaskBodies, section};
 use input::shipped::TASKS;
 use input::units::{DEG, MM};
-use insertion::finger::Pad;
-use insertion::task::{
-    Ending, Mated, Part, Phase, Solid, Stage, StartRule, Strategy, Success, Task, TouchDetection,
-};
+use insertion::task::{Mated, Success, TouchDetection};
+use insertion::{Ending, Pad, Part, Phase, Solid, Stage, StartRule, Strategy, Task};
 
 /// Distance of the TCP below the shoulder, m, as in the shipped tasks.
 const BELOW_SHOULDER: f64 = 3.5 * MM;

@@ -1,7 +1,7 @@
 //! Replacement of the strategy in the text of a task file: comments are kept, and old values become comments.
 
 use super::write;
-use insertion::task::Strategy;
+use insertion::Strategy;
 use toml_edit::{Array, ArrayOfTables, DocumentMut, Item, RawString, Table, TomlError, Value};
 
 /// Byte order mark, with which some editors on Windows begin a file.

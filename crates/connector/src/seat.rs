@@ -4,7 +4,8 @@
 use super::body::{ConvexBody, clipped, extent};
 use contact::scene::Pose;
 use input::units::MM;
-use insertion::task::{Ending, Mated, Part, Stage, Task};
+use insertion::task::Mated;
+use insertion::{Ending, Part, Stage, Task};
 use nalgebra::{Point3, UnitQuaternion, Vector3};
 
 /// Overlap that is ignored, m: faces that touch can overlap after lengths are rounded to 0.01 mm.

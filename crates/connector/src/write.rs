@@ -4,10 +4,8 @@ use super::draft::DENSITY;
 use super::hold;
 use input::units::{DEG, GRAM, MM};
 use insertion::task::parts_file::PartsFile;
-use insertion::task::{
-    Ending, Limits, Mated, PadTorsion, Part, Phase, Solid, StartRule, Strategy, Task,
-    TouchDetection,
-};
+use insertion::task::{Limits, Mated, PadTorsion, TouchDetection};
+use insertion::{Ending, Part, Phase, Solid, StartRule, Strategy, Task};
 use nalgebra::{Point3, Vector3};
 
 /// Comments of a task file, and the file of its parts.

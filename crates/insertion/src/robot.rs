@@ -189,7 +189,7 @@ struct Rigid {}
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fixtures::{refused, robot_file};
+    use crate::tests::fixtures::{refused, robot_file};
     use input::shipped::ROBOTS;
     use input::{Place, Placed};
 

@@ -6,8 +6,7 @@ use crate::answer::{
     Answer, MeasuredFinger, OnTask, Recommended, RobotWindow, Trust, Verdict, lines,
 };
 use crate::glossary::explained;
-use insertion::evaluation::Window;
-use insertion::outcome::Outcome;
+use insertion::{Outcome, Window};
 use maud::{Markup, html};
 use study::{BenchPrediction, ByRibs};
 

@@ -2,7 +2,7 @@
 
 use super::elements::table;
 use crate::answer::words::{design, interval, mm, others};
-use insertion::outcome::FailureClass;
+use insertion::FailureClass;
 use maud::{Markup, html};
 use study::{BenchFinger, StudyRecord};
 

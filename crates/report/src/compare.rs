@@ -8,7 +8,7 @@ use super::page::PLOT;
 use super::theme::{BLUE, Colour, GREEN, INK, MUTED, ORANGE, RED};
 use super::{ReportError, text_table};
 use ask_tell::statistics::{interpolated_quantile, sorted};
-use insertion::evaluation::objective::{Aggregate, Constraint};
+use insertion::{Aggregate, Constraint};
 use maud::html;
 use plotters::prelude::*;
 use serde::Serialize;

@@ -8,7 +8,7 @@ use super::marks::{PointMark, Series, dashed, label, legend_above, line, points,
 use super::selection::{PLOTTED, change_points, note, selected};
 use super::theme::{BLUE, GREEN, MUTED, ORANGE, RED};
 use crate::answer::words::{settled, volume_unit};
-use insertion::evaluation::objective::Measure;
+use insertion::Measure;
 use maud::Markup;
 use plotters::prelude::*;
 use study::{Recorded, StudyRecord, Walked, volume};

@@ -8,7 +8,7 @@ use super::theme::{
 };
 use crate::answer::words::outcome as numbered;
 use analysis::map::{CaptureMap, MapAxis, OutcomeCode};
-use insertion::outcome::{FailureClass, Outcome};
+use insertion::{FailureClass, Outcome};
 use plotters::prelude::*;
 
 /// Outcomes and their colours, in the order of the legend.

@@ -11,8 +11,8 @@ use crate::answer::words::{design, evaluated, on, outcome, remedy};
 use crate::answer::{Answer, Verdict, command, expectation, lines};
 use analysis::levers::Levers;
 use finray::export::sheet;
-use insertion::evaluation::{Evaluation, grid_mm};
-use insertion::outcome::{FailureClass, Outcome, stop_words};
+use insertion::outcome::stop_words;
+use insertion::{Evaluation, FailureClass, Outcome, grid_mm};
 use maud::{Markup, PreEscaped, html};
 use study::Recorded;
 

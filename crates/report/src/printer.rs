@@ -3,7 +3,8 @@
 use crate::answer::Answer;
 use finray::geometry::Geometry;
 use input::shipped::FINGERS;
-use insertion::finger::file::{FingerFile, infill};
+use insertion::FingerFile;
+use insertion::finger::file::infill;
 use study::StudyRecord;
 
 /// Triangle mesh of the recommended finger with its ribs, in the folder of its study.

@@ -3,11 +3,9 @@
 use super::elements::{definitions, table};
 use crate::answer::{Answer, command, lines, words};
 use crate::glossary::explained;
-use insertion::evaluation::Evaluation;
-use insertion::evaluation::objective::Measure;
-use insertion::outcome::{FailureClass, Outcome};
 use insertion::stiffness::Axis;
 use insertion::surrogate::Model;
+use insertion::{Evaluation, FailureClass, Measure, Outcome};
 use maud::{Markup, html};
 use parameters::numbers::RCC_KEY;
 use study::{Provenance, Recorded, StudyRecord};

@@ -2,10 +2,8 @@
 
 use super::printer::finger_file;
 use crate::answer::words::evaluated;
-use insertion::evaluation::Evaluation;
-use insertion::evaluation::objective::Measure;
 use insertion::finger::file::is_shape;
-use insertion::space::Variable;
+use insertion::{Evaluation, Measure, Variable};
 use maud::{Markup, html};
 use parameters::label;
 use study::{Recorded, StudyRecord};

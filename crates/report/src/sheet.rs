@@ -2,9 +2,8 @@
 
 use super::elements::{data_url, styled};
 use input::units::{DEG, MM};
-use insertion::outcome::Outcome;
-use insertion::task::Task;
 use insertion::trial::{PROBE_FORCE, PROBE_SLIDES, PROBE_SPEED, PROBE_STROKE};
+use insertion::{Outcome, Task};
 use maud::{Markup, html};
 
 /// Number of boxes to fill in per row.

@@ -8,8 +8,9 @@ use super::theme::{BLUE, Colour, GREEN, INK, MUTED, ORANGE};
 use super::{ReportError, text_table};
 use ask_tell::statistics::sorted;
 use input::units::N_PER_MM;
-use insertion::stiffness::{Axis, Measurement};
-use insertion::surrogate::{Estimate, Model};
+use insertion::stiffness::Axis;
+use insertion::surrogate::Model;
+use insertion::{Estimate, Measurement};
 use plotters::prelude::*;
 use serde_json::{Value, json};
 

@@ -4,7 +4,7 @@
 use crate::answer::words::rounded;
 use ask_tell::gp::{FitEffort, Gp, fit};
 use ask_tell::statistics::{Moments, span};
-use insertion::space::Variable;
+use insertion::Variable;
 use serde_json::{Value, json};
 use study::{Recorded, StudyRecord};
 

@@ -3,7 +3,7 @@
 use super::elements::stacked;
 use crate::answer::words::{COMPLIANCE, design, mm, stiffness};
 use crate::answer::{Answer, Ties, lines};
-use insertion::evaluation::objective::Measure;
+use insertion::Measure;
 use maud::{Markup, html};
 use study::Recorded;
 

@@ -9,11 +9,11 @@
 //! torn or damaged file fails its checksum; the design is then evaluated and written again.
 
 use super::provenance::SIMULATION_SOURCES;
-use super::seal::{seal, sha256_hex, unseal};
+use super::seal::{seal, unseal};
+use super::sha256_hex;
 use input::files::{self, LARGEST_OWN};
-use insertion::evaluation::Evaluation;
-use insertion::robot::Robot;
 use insertion::trial::engine::EngineRecord;
+use insertion::{Evaluation, Robot};
 use std::fmt::Debug;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
@@ -92,8 +92,8 @@ pub(super) mod tests {
     use input::shipped::ROBOTS;
     use insertion::evaluation::tolerance::{Search, evaluate};
     use insertion::finger::Finger;
+    use insertion::tests::fake::FakeRig;
     use insertion::trial::engine::EngineKind;
-    use insertion::trial::fake::FakeRig;
 
     pub fn sound() -> Evaluation {
         evaluate(&FakeRig::default(), &Finger::new(3e3, 2e4), Search::Strides)

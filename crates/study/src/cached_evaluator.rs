@@ -1,13 +1,9 @@
 //! Evaluation of a study's designs by simulation, with a cache and cancellation.
 
-use super::cache::Cache;
-use insertion::evaluation::Evaluation;
-use insertion::evaluation::evaluator::{Evaluate, Evaluations, Evaluator, Scenario};
-use insertion::evaluation::robustness::Plan;
-use insertion::evaluation::robustness::race::Race;
-use insertion::evaluation::template::DesignError;
-use insertion::evaluation::tolerance::Search;
-use insertion::space::Design;
+use super::Cache;
+use insertion::{
+    Design, DesignError, Evaluate, Evaluation, Evaluations, Evaluator, Plan, Race, Scenario, Search,
+};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Evaluator with a cache and cancellation.

@@ -1,12 +1,10 @@
 //! Resolved configuration of a study: `study.toml`.
 
+use super::Provenance;
 use super::differences::differences;
-use super::provenance::Provenance;
 use ask_tell::OptimizerKind;
 use insertion::evaluation::INDIFFERENCE_MM;
-use insertion::evaluation::objective::{Aggregate, Constraint, Goals, Measure, Objectives};
-use insertion::finger::model::FingerModelKind;
-use insertion::space::Space;
+use insertion::{Aggregate, Constraint, FingerModelKind, Goals, Measure, Objectives, Space};
 use serde::{Deserialize, Serialize};
 use std::ops::RangeInclusive;
 

@@ -14,12 +14,9 @@
 //! study uses the finger stiffnesses of the paper, each walked design is also evaluated once with the
 //! stiffnesses computed from its ribs, for comparison only.
 
-use super::folder::read_analysis;
-use super::provenance::Provenance;
-use super::record::{ByRibs, Recorded, Walked};
 use super::rule::{Rank, Rule};
-use insertion::evaluation::Evaluation;
-use insertion::evaluation::robustness::firm::FirmResult;
+use super::{ByRibs, Provenance, Recorded, Walked, read_analysis};
+use insertion::{Evaluation, FirmResult};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;

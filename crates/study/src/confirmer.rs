@@ -1,19 +1,14 @@
 //! Simulations that confirm the best designs of a study; see `confirmed.rs`.
 
-use super::cached_evaluator::CachedEvaluator;
 use super::confirmed::{ConfirmationFile, ConfirmedDesign, WALK_FILE, Walk, ranked};
-use super::error::StudyError;
-use super::folder::{Study, write_analysis};
-use super::record::{ByRibs, Recorded, first_current};
+use super::record::first_current;
 use super::rule::{Rank, Rule};
+use super::{ByRibs, CachedEvaluator, Recorded, Study, StudyError, write_analysis};
 use ask_tell::Grid;
 use ask_tell::gp::{Advice, StoppingCriterion};
-use insertion::evaluation::Evaluation;
-use insertion::evaluation::evaluator::{Evaluate, Evaluator};
-use insertion::evaluation::robustness::firm::FirmResult;
-use insertion::evaluation::template::{DesignError, Template};
-use insertion::evaluation::tolerance::Search;
-use insertion::space::Design;
+use insertion::{
+    Design, DesignError, Evaluate, Evaluation, Evaluator, FirmResult, Search, Template,
+};
 use rayon::ThreadPool;
 use rayon::prelude::*;
 use std::path::PathBuf;

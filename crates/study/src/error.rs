@@ -1,8 +1,7 @@
 //! Errors of a study.
 
 use input::{Place, Placed};
-use insertion::evaluation::template::DesignError;
-use insertion::space::Design;
+use insertion::{Design, DesignError};
 use std::io;
 use std::path::{Path, PathBuf};
 

@@ -12,20 +12,18 @@
 //! .lock            lock of the writing process
 //! ```
 
-use super::config::{AnalysisSettings, StudyConfig};
 use super::confirmed::{ConfirmationFile, confirmed_designs};
-use super::error::StudyError;
 use super::header;
 use super::journal::{self, Contents, JOURNAL_FILE, Journal};
-use super::limits::ForceLimits;
 use super::lock::{Lock, lock};
-use super::on_bench::BenchPrediction;
-use super::provenance::{Provenance, Segment};
-use super::record::{Recorded, StudyRecord, first_current};
+use super::record::first_current;
 use super::rule::Rule;
-use super::seal::sha256_hex;
+use super::{
+    AnalysisSettings, BenchPrediction, ForceLimits, Provenance, Recorded, Segment, StudyConfig,
+    StudyError, StudyRecord, sha256_hex,
+};
 use input::files::{self, LARGEST_INPUT, LARGEST_OWN};
-use insertion::finger::file::FingerFile;
+use insertion::FingerFile;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::borrow::Cow;

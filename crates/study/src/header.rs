@@ -1,12 +1,11 @@
 //! Header of a journal: its first two lines, which identify the study.
 
-use super::config::StudyConfig;
 use super::differences::differences;
 use super::error::LineError;
 use super::line::WORKER;
-use super::provenance::Segment;
 use super::seal::{seal, unseal};
-use insertion::evaluation::objective::Measure;
+use super::{Segment, StudyConfig};
+use insertion::Measure;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;

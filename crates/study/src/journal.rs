@@ -4,11 +4,9 @@
 //! moment therefore leaves complete lines and at most one torn line at the end, which is cut off when the
 //! journal is opened. Damage anywhere else is an error.
 
-use super::config::StudyConfig;
-use super::error::{LineError, StudyError};
+use super::error::LineError;
 use super::lock::{Lock, UNKNOWN_OWNER};
-use super::provenance::Segment;
-use super::record::Recorded;
+use super::{Recorded, Segment, StudyConfig, StudyError};
 use super::{header, line};
 use input::files::{self, LARGEST_JOURNAL};
 use std::fs::{self, File, TryLockError};

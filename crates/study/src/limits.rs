@@ -1,8 +1,7 @@
 //! Largest contact forces that the connectors of a study and its robot withstand.
 
-use super::folder::Inputs;
-use insertion::robot::Robot;
-use insertion::task::Task;
+use super::Inputs;
+use insertion::{Robot, Task};
 
 /// Largest contact forces of a study, N.
 #[derive(Debug, Clone, Default, PartialEq)]

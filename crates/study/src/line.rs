@@ -10,12 +10,9 @@
 //! between two runs of a study; `sed 's/,"datetime_start".*//'` removes them.
 
 use super::error::LineError;
-use super::record::{Recorded, Timing};
 use super::seal::{CHECK_KEY, seal, unseal};
-use insertion::evaluation::Evaluation;
-use insertion::evaluation::objective::Score;
-use insertion::space::{Design, Space, Variable};
-use insertion::surrogate::Prediction;
+use super::{Recorded, Timing};
+use insertion::{Design, Evaluation, Prediction, Score, Space, Variable};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;

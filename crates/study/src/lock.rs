@@ -1,6 +1,6 @@
 //! Lock of a study's folder, for one writing process.
 
-use super::error::StudyError;
+use super::StudyError;
 use std::fs::{File, TryLockError};
 use std::io::{Read, Seek, Write};
 use std::path::Path;

@@ -1,12 +1,8 @@
 //! Prediction of the ranges of a study's fingers on the bench (the real robot) from measurements there:
 //! `bench.json` beside the journal. It is computed after the search, does not affect it, and can be repeated.
 
-use super::config::BenchEffort;
-use super::folder::read_analysis;
-use super::provenance::Provenance;
-use insertion::evaluation::Evaluation;
-use insertion::outcome::FailureClass;
-use insertion::space::Design;
+use super::{BenchEffort, Provenance, read_analysis};
+use insertion::{Design, Evaluation, FailureClass};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 

@@ -1,7 +1,8 @@
 //! Provenance of a study's values.
 
 use super::differences::differences;
-use insertion::trial::engine::{EngineKind, EngineRecord};
+use insertion::EngineKind;
+use insertion::trial::engine::EngineRecord;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 

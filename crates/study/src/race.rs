@@ -1,10 +1,8 @@
 //! Race of the designs of a study for the success rate.
 
-use super::config::StudyConfig;
-use super::folder::Study;
-use super::record::{Recorded, best, first_current};
-use insertion::evaluation::objective::{Aggregate, Measure};
-use insertion::evaluation::robustness::race::Race;
+use super::record::first_current;
+use super::{Recorded, Study, StudyConfig, best};
+use insertion::{Aggregate, Measure, Race};
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
 

@@ -1,10 +1,10 @@
 //! Recommended design of a study, equivalent designs, and aggregated measures.
 
-use super::record::{Recorded, StudyRecord};
 use super::rule::Rule;
+use super::{Recorded, StudyRecord};
 use ask_tell::Grid;
 use ask_tell::gp::{Confirmed, StoppingCriterion};
-use insertion::evaluation::objective::Measure;
+use insertion::Measure;
 
 impl StudyRecord {
     /// Returns the recommended design of a study with one objective: the first by the rule (`rule.rs`) among

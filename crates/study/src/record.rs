@@ -1,17 +1,10 @@
 //! Record of a study: its configuration, evaluations and analyses.
 
-use super::StudyConfig;
-use super::limits::ForceLimits;
-use super::on_bench::BenchPrediction;
-use super::provenance::{Provenance, Segment};
+use super::{BenchPrediction, ForceLimits, Provenance, Segment, StudyConfig};
 use ask_tell::{Grid, pareto};
-use insertion::evaluation::Evaluation;
-use insertion::evaluation::objective::{Goals, Measure, Score};
-use insertion::evaluation::robustness::firm::FirmResult;
-use insertion::finger::file::FingerFile;
-use insertion::outcome::Outcome;
-use insertion::space::Design;
-use insertion::surrogate::Prediction;
+use insertion::{
+    Design, Evaluation, FingerFile, FirmResult, Goals, Measure, Outcome, Prediction, Score,
+};
 use jiff::Timestamp;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;

@@ -9,12 +9,9 @@
 //!    span of each;
 //! 6. the earlier evaluation.
 
-use super::StudyConfig;
-use super::record::Recorded;
+use super::{Recorded, StudyConfig};
 use ask_tell::Observation;
-use insertion::evaluation::Evaluation;
-use insertion::evaluation::objective::{Goals, Measure};
-use insertion::space::{Design, Space, Variable};
+use insertion::{Design, Evaluation, Goals, Measure, Space, Variable};
 use std::cmp::Ordering;
 
 /// Recommendation rule of a study.

@@ -1,11 +1,10 @@
 //! Execution of a study on the threads of this process.
 
-use super::error::StudyError;
-use super::folder::Study;
-use super::record::{Recorded, Timing};
-use super::scheduler::{Ending, Next, Proposal, ProposalResult, Scheduler};
+use super::{
+    Ending, Next, Proposal, ProposalResult, Recorded, Scheduler, Study, StudyError, Timing,
+};
 use ask_tell::Optimizer;
-use insertion::evaluation::evaluator::Evaluate;
+use insertion::Evaluate;
 use rayon::ThreadPool;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};

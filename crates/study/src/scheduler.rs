@@ -22,16 +22,12 @@
 //! at its nominal start: if none does, the start or the strategy is wrong, and no other finger would
 //! succeed. The rest of that batch is evaluated once a design has inserted.
 
-use super::error::StudyError;
-use super::folder::Study;
 use super::line;
-use super::record::{Recorded, Timing, most_evaluations};
+use super::record::most_evaluations;
+use super::{Recorded, Study, StudyError, Timing};
 use ask_tell::GridPoint;
 use ask_tell::{Observation, Optimizer, StopReason};
-use insertion::evaluation::evaluator::Evaluations;
-use insertion::evaluation::objective::Score;
-use insertion::evaluation::robustness::race::Race;
-use insertion::space::Design;
+use insertion::{Design, Evaluations, Race, Score};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 

@@ -4,8 +4,8 @@
 //! `{contents,"check":"<16 digits>","datetime_start":..}`. The checksum is the beginning of the SHA-256 of
 //! all bytes before it.
 
+use super::Timing;
 use super::error::LineError;
-use super::record::Timing;
 pub use insertion::task::parts_file::sha256 as sha256_hex;
 use serde::Serialize;
 

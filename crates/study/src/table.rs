@@ -1,8 +1,7 @@
 //! `evaluations.csv`: table of the evaluations with the keys of JSON and journal, units in the header.
 
-use super::error::StudyError;
-use super::record::{Recorded, StudyRecord};
-use insertion::evaluation::objective::Score;
+use super::{Recorded, StudyError, StudyRecord};
+use insertion::Score;
 use serde::Serialize;
 use serde_json::Value;
 use std::path::Path;

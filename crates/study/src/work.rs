@@ -6,14 +6,9 @@
 //! rejects it. The result contains the SHA-256 of its work. Both are a line of JSON with a checksum, as in
 //! journals.
 
-use super::folder::Inputs;
-use super::provenance::Provenance;
-use super::record::Timing;
-use super::scheduler::{Proposal, ProposalResult};
-use super::seal::{seal, sha256_hex, unseal};
-use insertion::evaluation::Evaluation;
-use insertion::evaluation::evaluator::Evaluations;
-use insertion::surrogate::Prediction;
+use super::seal::{seal, unseal};
+use super::{Inputs, Proposal, ProposalResult, Provenance, Timing, sha256_hex};
+use insertion::{Evaluation, Evaluations, Prediction};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 

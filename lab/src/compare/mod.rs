@@ -6,17 +6,11 @@ pub mod pairs;
 #[cfg(test)]
 mod tests;
 
-use finger_opt::failure::Failure;
-use finger_opt::setup::task::read_task;
+use finger_opt::{Failure, read_task};
 use input::shipped::TASKS;
-use insertion::evaluation::tolerance::{self, Search};
-use insertion::evaluation::{Evaluation, Window};
-use insertion::finger::Finger;
-use insertion::outcome::Outcome;
-use insertion::stiffness::Measurement;
-use insertion::task::Task;
+use insertion::evaluation::tolerance;
 use insertion::task::finger::FingerModel;
-use insertion::trial::Rig;
+use insertion::{Evaluation, Finger, Measurement, Outcome, Rig, Search, Task, Window};
 use rayon::prelude::*;
 use std::sync::Arc;
 

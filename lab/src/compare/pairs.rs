@@ -2,8 +2,7 @@
 
 use super::{Setting, Subject, TaskSettings, each, window_words};
 use ask_tell::statistics::mean;
-use insertion::evaluation::{Evaluation, OffsetStep, Window, grid_mm};
-use insertion::stiffness::Measurement;
+use insertion::{Evaluation, Measurement, OffsetStep, Window, grid_mm};
 use report::text_table;
 
 /// Windows of a finger in two settings.

@@ -6,7 +6,7 @@ use input::shipped::TASKS;
 use insertion::evaluation::OffsetStep;
 use insertion::outcome::FailureClass;
 use insertion::stiffness::representative_designs;
-use insertion::trial::fake::FakeRig;
+use insertion::tests::fake::FakeRig;
 
 pub(super) fn window(steps: [OffsetStep; 2], ends: [FailureClass; 2]) -> Window {
     let [negative_steps, positive_steps] = steps;

@@ -1,11 +1,9 @@
 //! `optimize export finger`: exports a finger for printing.
 
-use crate::command::{self, Output};
-use crate::context::Context;
-use crate::failure::Failure;
 use crate::setup::film::extension;
 use crate::setup::printed::PrintRequest;
 use crate::studies::study_name;
+use crate::{Context, Failure, Output, command};
 use clap::ValueEnum;
 use connector::mesh::axes::value;
 use finray::export::prism::{Prism, PrismError};
@@ -25,10 +23,7 @@ use study::write_file;
 /// settings for slicers are for the outline, which is written beside them; the slicer fills it
 /// with its own ribs.
 #[derive(Debug, Clone, clap::Args)]
-#[command(
-    display_order = 2,
-    after_help = "Example: optimize export finger results/rj45-gp-seed0 --out finger.stl"
-)]
+#[command(after_help = "Example: optimize export finger results/rj45-gp-seed0 --out finger.stl")]
 pub struct Request {
     /// The finger.
     #[command(flatten)]

@@ -1,12 +1,8 @@
 //! `optimize export mjcf`: writes the scene of a trial as MJCF.
 
-use crate::command::{self, Output};
-use crate::context::Context;
-use crate::failure::Failure;
-use crate::setup::finger::FingerRequest;
-use crate::setup::request::SetupRequest;
+use crate::{Context, Failure, FingerRequest, Output, SetupRequest, command};
 use contact::mjcf::{self, MjcfSettings};
-use insertion::evaluation::evaluator::Scenario;
+use insertion::Scenario;
 use insertion::trial::cell;
 use serde::Serialize;
 use std::path::PathBuf;
@@ -18,7 +14,6 @@ use study::write_file;
 /// sliders move the robot's command and close the jaws. MuJoCo is not needed for the export.
 #[derive(Debug, clap::Args)]
 #[command(
-    display_order = 1,
     mut_arg("engine", |engine| engine.hide(true)),
     after_help = "Example: optimize export mjcf --task usb --density 20 --direction 10 --out scene.xml"
 )]

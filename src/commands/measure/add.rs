@@ -1,18 +1,15 @@
 //! `optimize measure add`: adds a line to a measurement file.
 
-use crate::command::{self, Output};
-use crate::context::Context;
-use crate::failure::Failure;
 use crate::setup::measured::BENCH_FILE;
-use crate::setup::task::{TaskFile, read_task};
 use crate::terminal::say;
+use crate::{Context, Failure, Output, TaskFile, command, read_task};
 use calibration::experiments::{
     COLUMNS, Experiment, NOT_MEASURABLE, Problems, appended, own_task, own_tasks, parse,
 };
 use input::InputError;
 use input::files::{LARGEST_INPUT, LockedFile};
 use input::shipped::{COMMERCIAL, MEASUREMENTS, TASKS};
-use insertion::space::{DENSITY_KEY, DIRECTION_KEY};
+use insertion::{DENSITY_KEY, DIRECTION_KEY};
 use serde_json::json;
 use std::io::{self, BufRead};
 use std::path::Path;
@@ -20,7 +17,6 @@ use std::path::Path;
 /// Add a line to a measurement file, which is created if needed; without options it prompts for each value
 #[derive(Debug, clap::Args)]
 #[command(
-    display_order = 1,
     after_help = "Example: optimize measure add bench.csv --task ket8 --density 20 --direction 0 \
                   --range-mm 5.7 --failure-negative 3 --failure-positive 3"
 )]

@@ -1,16 +1,13 @@
 //! `optimize measure check`: checks a measurement file.
 
-use crate::command::{self, Output};
-use crate::context::Context;
-use crate::failure::Failure;
 use crate::setup::measured::{self, BENCH_FILE};
-use crate::setup::task::read_task;
+use crate::{Context, Failure, Output, command, read_task};
 use calibration::experiments::Experiment;
 use serde_json::{Value, json};
 
 /// Check a measurement file: implausible units, windows without the start, duplicate lines, unknown tasks
 #[derive(Debug, clap::Args)]
-#[command(display_order = 2, after_help = "Example: optimize measure check bench.csv")]
+#[command(after_help = "Example: optimize measure check bench.csv")]
 pub struct Request {
     /// The file, or `published` for the shipped one
     #[arg(value_name = "FILE", default_value = BENCH_FILE)]

@@ -1,16 +1,13 @@
 //! `optimize measure sheet`: sheet for measuring windows by hand.
 
-use crate::command::{self, Output};
 use crate::commands::trial;
-use crate::context::Context;
-use crate::failure::Failure;
-use crate::setup::finger::{FingerRequest, InfillRequest};
-use crate::setup::request::{SetupRequest, TaskSource};
-use crate::setup::task::read_task;
+use crate::setup::finger::InfillRequest;
 use crate::setup::words::parse_pair;
-use insertion::evaluation::evaluator::Scenario;
-use insertion::outcome::Outcome;
+use crate::{
+    Context, Failure, FingerRequest, Output, SetupRequest, TaskSource, command, read_task,
+};
 use insertion::trial::picture;
+use insertion::{Outcome, Scenario};
 use report::sheet::{self, Picture};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -32,10 +29,7 @@ type Example<'a> = (&'a str, (f64, f64), f64, Option<f64>);
 
 /// Write a printable sheet for measuring windows by hand
 #[derive(Debug, Clone, clap::Args)]
-#[command(
-    display_order = 3,
-    after_help = "Example: optimize measure sheet --task usb --finger 10,0 --out sheet.html"
-)]
+#[command(after_help = "Example: optimize measure sheet --task usb --finger 10,0 --out sheet.html")]
 pub struct Request {
     /// Task: ket8, ket12, rj45, usb, rj45_latch, usb_a, or the path of a task file
     #[arg(long, value_name = "NAME")]

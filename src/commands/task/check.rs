@@ -1,12 +1,7 @@
 //! `optimize task check`: checks a task file and its nominal start; if that fails, looks for a strategy that inserts.
 
-use crate::command::{self, Output};
-use crate::context::Context;
-use crate::failure::Failure;
-use crate::layout;
-use crate::setup::request::{RobotRequest, TaskSource};
-use crate::setup::task::TaskCheck;
 use crate::setup::tune::{brief, chosen, tried};
+use crate::{Context, Failure, Output, RobotRequest, TaskCheck, TaskSource, command, layout};
 use connector::picture;
 use std::convert::Infallible;
 use std::path::PathBuf;
@@ -16,10 +11,7 @@ use study::write_file;
 ///
 /// Exit code 0 if there is no problem and the plug inserts, 2 otherwise.
 #[derive(Debug, clap::Args)]
-#[command(
-    display_order = 3,
-    after_help = "Example: optimize task check usb-c.toml --svg usb-c.svg"
-)]
+#[command(after_help = "Example: optimize task check usb-c.toml --svg usb-c.svg")]
 pub struct Request {
     /// Task file, or the name of a shipped task
     #[arg(value_name = "FILE", value_parser = |name: &str| Ok::<_, Infallible>(TaskSource::single(name)))]

@@ -1,15 +1,14 @@
 //! `optimize task import`: creates a task from meshes of plug and socket.
 
-use crate::command::{self, Output};
-use crate::context::{Context, not_stopped};
-use crate::failure::{Failure, within};
+use crate::failure::within;
 use crate::layout::wrapped;
 use crate::setup::bodies::{PairRequest, parts};
 use crate::setup::files::{check_is_new, robot};
 use crate::setup::mated::{MatedTask, left_out_json, mated};
-use crate::setup::request::RobotRequest;
-use crate::setup::task::{TaskCheck, TaskFile, read_task};
 use crate::setup::tune::{brief, chosen, tune_new};
+use crate::{
+    Context, Failure, Output, RobotRequest, TaskCheck, TaskFile, command, not_stopped, read_task,
+};
 use connector::body::width;
 use connector::mesh::axes::value;
 use connector::mesh::mated::{PairTask, check_handle};
@@ -36,7 +35,6 @@ const MAX_INLINE: usize = 30;
 /// these shapes.
 #[derive(Debug, Clone, clap::Args)]
 #[command(
-    display_order = 4,
     after_help = "Example: optimize task import --plug plug.stl --socket socket.stl --out mine.toml"
 )]
 pub struct Request {

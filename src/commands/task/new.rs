@@ -1,13 +1,9 @@
 //! `optimize task new`: creates a task file.
 
-use crate::command::{self, Output};
-use crate::context::Context;
-use crate::failure::Failure;
 use crate::layout::wrapped;
 use crate::setup::files::{check_is_new, robot};
-use crate::setup::request::RobotRequest;
-use crate::setup::task::{TaskCheck, TaskFile, read_task};
 use crate::setup::tune::{brief, chosen, tune_new};
+use crate::{Context, Failure, Output, RobotRequest, TaskCheck, TaskFile, command, read_task};
 use connector::draft::{self, Dimensions, Hole, Size};
 use connector::pins::Pins;
 use connector::tune::Tuned;
@@ -31,7 +27,6 @@ const EXAMPLE: (&str, f64, &str) = ("8.25x2.4x6.65", 0.1, "12x6.5x20");
 /// Without any of these the task is a USB-C plug.
 #[derive(Debug, clap::Args)]
 #[command(
-    display_order = 1,
     after_help = "Example: optimize task new usb-c --plug 8.25x2.4x6.65 --clearance 0.1 --body 12x6.5x20"
 )]
 pub struct Request {

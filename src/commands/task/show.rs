@@ -1,12 +1,10 @@
 //! `optimize task show`: prints a task file, or shows its parts in three dimensions.
 
-use crate::command::{self, Output};
-use crate::context::Context;
-use crate::failure::Failure;
 use crate::layout::wrote;
 use crate::setup::files::robot;
-use crate::setup::request::{DEFAULT_ROBOT, TaskSource};
-use crate::setup::task::{TaskFile, nominal_recording};
+use crate::setup::request::DEFAULT_ROBOT;
+use crate::setup::task::nominal_recording;
+use crate::{Context, Failure, Output, TaskFile, TaskSource, command};
 use report::replay::{self, Film};
 use std::path::PathBuf;
 use study::write_file;
@@ -16,7 +14,7 @@ use study::write_file;
 /// With --html a page shows plug, socket and fingertips in a view that can be rotated: the grip, the path of the
 /// search from the nominal start, and the pose at its end.
 #[derive(Debug, clap::Args)]
-#[command(display_order = 2, after_help = "Example: optimize task show usb > mine.toml")]
+#[command(after_help = "Example: optimize task show usb > mine.toml")]
 pub struct Request {
     /// Task: ket8, ket12, rj45, usb, rj45_latch, usb_a, or the path of a task file
     #[arg(value_name = "NAME")]

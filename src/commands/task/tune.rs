@@ -1,25 +1,20 @@
 //! `optimize task tune`: finds a strategy that inserts a connector.
 
-use crate::command::{self, Output};
-use crate::context::{Context, not_stopped};
-use crate::failure::Failure;
 use crate::layout::{lines, wrapped};
 use crate::setup::files::{check_is_new, robot};
-use crate::setup::request::{RobotRequest, TaskSource};
-use crate::setup::task::TaskFile;
 use crate::setup::tune::{outcome, ranges, step_json, tilt_text, tried, turned_text};
 use crate::setup::words::parse_number;
+use crate::{Context, Failure, Output, RobotRequest, TaskFile, TaskSource, command, not_stopped};
 use connector::check::problems;
 use connector::tune::{Candidate, Effort, MAX_WINDOWS, Stage, Step, Tuned, Tuner, tune};
 use connector::{picture, rewrite};
 use input::Place;
 use input::shipped::Source;
 use input::units::{DEG, MM, N_PER_MM};
-use insertion::evaluation::{INDIFFERENCE_MM, Window};
-use insertion::finger::Finger;
-use insertion::robot::Robot;
+use insertion::evaluation::INDIFFERENCE_MM;
+use insertion::task::Limits;
 use insertion::task::parts_file::without_parts;
-use insertion::task::{Limits, Strategy, Task};
+use insertion::{Finger, Robot, Strategy, Task, Window};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
@@ -31,7 +26,7 @@ use study::write_file;
 /// this opening; then tilt, strokes, preload and push speed are optimized for the smallest range of a soft, a
 /// medium and a stiff finger. Exit code 1 if nothing inserts. Ctrl-C writes the best strategy so far.
 #[derive(Debug, Clone, clap::Args)]
-#[command(display_order = 5, after_help = "Example: optimize task tune mine.toml --svg mine.svg")]
+#[command(after_help = "Example: optimize task tune mine.toml --svg mine.svg")]
 pub struct Request {
     /// Task file, which is rewritten; or the name of a shipped task, with --out
     #[arg(value_name = "FILE")]

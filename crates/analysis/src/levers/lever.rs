@@ -2,7 +2,8 @@
 
 use input::shipped::SPACES;
 use insertion::evaluation::INDIFFERENCE_MM;
-use insertion::space::{Design, Space, is_of_task};
+use insertion::space::is_of_task;
+use insertion::{Design, Space};
 use serde::{Deserialize, Serialize};
 
 /// Effect of the levers on the range of one finger on one task. The start is taught anew before each range is measured.

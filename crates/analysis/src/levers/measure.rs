@@ -2,15 +2,10 @@
 
 use super::bounds::{LeverParameter, lever_parameters};
 use super::lever::{Base, Lever, Levers};
-use insertion::evaluation::evaluator::{Evaluator, Scenario};
-use insertion::evaluation::robustness::Plan;
-use insertion::evaluation::template::{DesignError, Template};
-use insertion::evaluation::tolerance::Search;
-use insertion::evaluation::{Evaluation, grid_mm};
-use insertion::outcome::Outcome;
-use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design, Space};
-use insertion::surrogate::Prediction;
-use insertion::task::StartRule;
+use insertion::{
+    DENSITY_KEY, DIRECTION_KEY, Design, DesignError, Evaluation, Evaluator, Outcome, Plan,
+    Prediction, Scenario, Search, Space, StartRule, Template, grid_mm,
+};
 use parameters::plan::one_at_a_time::End;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};

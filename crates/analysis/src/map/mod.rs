@@ -5,8 +5,7 @@ mod plane;
 
 pub use plane::{Axes, Plane};
 
-use insertion::outcome::{FailureClass, Outcome};
-use insertion::space::Design;
+use insertion::{Design, FailureClass, Outcome};
 use parameters::plan::grid::{self, Node, TracedMap};
 use plane::{LIMIT, value};
 use serde::{Deserialize, Serialize};
@@ -161,7 +160,7 @@ mod tests {
     use clap::ValueEnum;
     use input::units::N_PER_MM;
     use insertion::finger::Finger;
-    use insertion::trial::fake::{FakeRig, window_mm};
+    use insertion::tests::fake::{FakeRig, window_mm};
     use insertion::trial::{Conditions, Grasp};
     use parameters::plan::grid::STEPS_PER_UNIT;
     use std::sync::atomic::{AtomicUsize, Ordering};

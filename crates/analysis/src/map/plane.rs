@@ -3,8 +3,8 @@
 use clap::ValueEnum;
 use input::units::MM;
 use insertion::evaluation::uncertainty::Draw;
-use insertion::outcome::Outcome;
-use insertion::trial::{Grasp, Grasped, Rig};
+use insertion::trial::Grasped;
+use insertion::{Grasp, Outcome, Rig};
 use parameters::numbers::{SOCKET_YAW, START_ACROSS, START_TILT};
 use parameters::plan::grid::{Node, STEPS_PER_UNIT};
 use std::sync::OnceLock;

@@ -3,8 +3,7 @@
 use super::{Experiment, NOT_MEASURABLE};
 use csv::StringRecord;
 use input::{InputError, Place, shown};
-use insertion::outcome::FailureClass;
-use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design};
+use insertion::{DENSITY_KEY, DIRECTION_KEY, Design, FailureClass};
 use jiff::Timestamp;
 use jiff::civil::Date;
 use jiff::tz::TimeZone;

@@ -7,7 +7,7 @@ use super::formulas::{Friction, explained};
 use super::log::{LogSample, Run};
 use ask_tell::statistics::weighted_mean;
 use input::units::MM;
-use insertion::task::{Stage, Task};
+use insertion::{Stage, Task};
 use nalgebra::{Vector2, Vector3};
 
 /// Smallest mean change of the positions by a correction, m; a smaller one cannot be told from errors of the motion.

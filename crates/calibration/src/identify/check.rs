@@ -7,8 +7,7 @@ use super::read::median_gap;
 use super::touch::{AirForce, after, air, any_touch, mean, touch};
 use ask_tell::statistics::Moments;
 use input::units::{DEG, MM};
-use insertion::outcome::{FailureClass, Outcome};
-use insertion::task::Task;
+use insertion::{FailureClass, Outcome, Task};
 use nalgebra::Vector3;
 use std::ops::Range;
 

@@ -2,9 +2,10 @@
 
 use super::log::{Log, LogSample};
 use input::units::{DEG, MM};
+use insertion::Tcp;
 /// Time between two points, s.
 pub use insertion::trial::LOG_STEP_S as STEP_S;
-use insertion::trial::{Sample, Tcp, Trajectory};
+use insertion::trial::{Sample, Trajectory};
 use nalgebra::{UnitQuaternion, Vector3};
 
 /// Number of points on either side from which derivatives are computed.

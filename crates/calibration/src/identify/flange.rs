@@ -3,7 +3,8 @@
 use super::formulas::Flange;
 use ask_tell::statistics::weighted_mean;
 use input::units::N_PER_MM;
-use insertion::robot::{Drive, Robot, Servo};
+use insertion::Robot;
+use insertion::robot::{Drive, Servo};
 
 /// Prior relative standard deviation of the stiffness of an axis, about that of the robot file times a common factor.
 const AXIS_SD: f64 = 0.2;

@@ -2,7 +2,7 @@
 
 use super::curves::{self, Curves, REACH, STEP_S, accelerations, rates, smoothed};
 use ask_tell::statistics::{Moments, mean};
-use insertion::surrogate::Estimate;
+use insertion::Estimate;
 use nalgebra::{DMatrix, DVector, Vector3};
 use serde::Serialize;
 use std::ops::Range;

@@ -2,7 +2,7 @@
 
 use input::units::MM;
 use input::{Check, InputError, read};
-use insertion::trial::Tcp;
+use insertion::Tcp;
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use serde::Deserialize;
 use std::f64::consts::{PI, TAU};

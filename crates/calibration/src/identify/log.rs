@@ -2,9 +2,8 @@
 
 use input::units::{DEG, MM};
 use input::{InputError, Place};
-use insertion::outcome::Outcome;
-use insertion::space::Design;
-use insertion::trial::{Sample, Tcp};
+use insertion::trial::Sample;
+use insertion::{Design, Outcome, Tcp};
 use nalgebra::Vector3;
 use std::fmt::Write as _;
 

@@ -14,9 +14,6 @@
 mod axes;
 pub mod check;
 pub mod curves;
-#[cfg(any(test, feature = "fixtures"))]
-#[allow(clippy::expect_used, reason = "for tests only")]
-pub mod fixtures;
 pub mod flange;
 pub mod formulas;
 pub mod frame;
@@ -28,7 +25,8 @@ pub mod read;
 pub mod replay;
 pub mod runs;
 pub mod smoother;
-#[cfg(test)]
-mod tests;
+#[cfg(any(test, feature = "fixtures"))]
+#[allow(clippy::expect_used, reason = "for tests only")]
+pub mod tests;
 pub mod touch;
 pub mod unknown;

@@ -14,12 +14,8 @@ use super::unknown::{
 };
 use ask_tell::statistics::{Moments, mean, median};
 use input::units::MM;
-use insertion::evaluation::cell::Priors;
-use insertion::evaluation::evaluator::Evaluator;
-use insertion::evaluation::template::{DesignError, Template};
-use insertion::outcome::Outcome;
-use insertion::robot::{Drive, Robot};
-use insertion::surrogate::Estimate;
+use insertion::robot::Drive;
+use insertion::{DesignError, Estimate, Evaluator, Outcome, Priors, Robot, Template};
 use parameters::numbers::{FLANGE, FRICTION, Kind};
 use parameters::{Parameter, Scale, Transform};
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -8,7 +8,7 @@ use ask_tell::statistics::median;
 use input::files;
 use input::units::{DEG, MM};
 use input::{InputError, Place, shown};
-use insertion::trial::Tcp;
+use insertion::Tcp;
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
 use std::path::Path;

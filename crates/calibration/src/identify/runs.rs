@@ -8,8 +8,7 @@ use crate::experiments::{Columns, Problems, rows};
 use input::files::{self, LARGEST_INPUT};
 use input::units::MM;
 use input::{InputError, Place};
-use insertion::outcome::Outcome;
-use insertion::space::{DENSITY_KEY, DIRECTION_KEY};
+use insertion::{DENSITY_KEY, DIRECTION_KEY, Outcome};
 use std::path::Path;
 
 /// Columns of the table; further ones are keys of a space file.

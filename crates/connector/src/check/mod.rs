@@ -12,7 +12,8 @@ use super::body::{clipped, extent, width};
 use super::seat::TaskBodies;
 use input::InputError;
 use input::units::MM;
-use insertion::task::{Part, Solid, Success, Task};
+use insertion::task::Success;
+use insertion::{Part, Solid, Task};
 use serde::Serialize;
 
 /// Fault of a task file.

@@ -6,7 +6,8 @@ use crate::body::{ConvexBody, Overlap, extent, width};
 use crate::hold::SEAM;
 use contact::scene::Pose;
 use input::units::{GRAM, MM};
-use insertion::task::{Part, geometry};
+use insertion::Part;
+use insertion::task::geometry;
 
 /// Largest overlap of joined parts, m.
 const OVERLAP: f64 = 0.5 * MM;

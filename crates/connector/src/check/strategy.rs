@@ -4,7 +4,7 @@ use super::{Problem, TaskBodies, mm, range};
 use crate::body::{Overlap, span, width};
 use crate::seat::{self, Waypoint, section};
 use input::units::MM;
-use insertion::task::{Ending, Phase, Stage};
+use insertion::{Ending, Phase, Stage};
 use nalgebra::{Translation3, Vector3};
 
 /// Overlap that counts as rounding, m.

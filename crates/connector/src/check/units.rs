@@ -5,7 +5,7 @@ use crate::body::{longest_side, width};
 use crate::seat::section;
 use input::units::{DEG, MM, mm};
 use input::wrong_unit::{self, WrongUnit, remedy};
-use insertion::task::Ending;
+use insertion::Ending;
 use nalgebra::Vector3;
 
 /// Range of widths between the jaws, mm: that of grippers in assembly cells, with a margin.

@@ -2,7 +2,7 @@
 
 use crate::body::extent;
 use input::units::MM;
-use insertion::task::Solid;
+use insertion::Solid;
 use insertion::task::geometry::{hull, other_axes};
 use nalgebra::{Point3, Vector3};
 

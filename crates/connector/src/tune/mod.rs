@@ -11,11 +11,8 @@ use ask_tell::{Grid, GridPoint, Observation, OptimizerKind};
 use input::InputError;
 use input::units::{DEG, MM};
 use insertion::evaluation::INDIFFERENCE_MM;
-use insertion::evaluation::template::DesignError;
-use insertion::finger::Finger;
-use insertion::outcome::Outcome;
-use insertion::task::{Strategy, Task};
 use insertion::trial::Conditions;
+use insertion::{DesignError, Finger, Outcome, Strategy, Task};
 use rayon::prelude::*;
 use std::ops::Range;
 

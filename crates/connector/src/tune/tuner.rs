@@ -1,16 +1,16 @@
 //! Evaluation of a strategy by the windows of a few measured fingers: the ranges of start offsets at which they insert.
 
 use input::units::MM;
-use insertion::evaluation::tolerance::{self, Search, offset};
-use insertion::evaluation::{Evaluation, Window, taught::teach};
-use insertion::finger::Finger;
-use insertion::outcome::Outcome;
-use insertion::robot::Robot;
-use insertion::stiffness::{Measurement, designs_by_rank};
-use insertion::task::{Limits, StartRule, Strategy, Task};
-use insertion::trial::engine::EngineKind;
+use insertion::evaluation::taught::teach;
+use insertion::evaluation::tolerance::{self, offset};
+use insertion::stiffness::designs_by_rank;
+use insertion::task::Limits;
+use insertion::trial::Conditions;
 use insertion::trial::run::RigError;
-use insertion::trial::{Conditions, Grasp, Trial};
+use insertion::{
+    EngineKind, Evaluation, Finger, Grasp, Measurement, Outcome, Robot, Search, StartRule,
+    Strategy, Task, Trial, Window,
+};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
 

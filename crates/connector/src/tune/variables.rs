@@ -5,8 +5,7 @@ use crate::seat;
 use input::InputError;
 use input::shipped::{LEVERS, PRIORS};
 use input::units::{DEG, MM};
-use insertion::evaluation::cell::Priors;
-use insertion::task::{Ending, Stage, Strategy, Task};
+use insertion::{Ending, Priors, Stage, Strategy, Task};
 use parameters::Parameter;
 
 /// Number of levels of a variable; odd, so that the current value is one of them.

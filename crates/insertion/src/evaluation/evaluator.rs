@@ -10,16 +10,13 @@ use super::taught::{Shifted, teach};
 use super::template::{DesignError, Template};
 use super::tolerance::Search;
 use super::{Evaluation, OffsetStep};
-use crate::finger::Finger;
-use crate::finger::model::{CentreSource, FingerSource, RCC_KEY};
-use crate::outcome::Outcome;
-use crate::robot::Robot;
-use crate::space::{DENSITY_KEY, DIRECTION_KEY, Design};
-use crate::surrogate::{Model, Prediction};
-use crate::task::{StartRule, Task};
-use crate::trial::engine::EngineKind;
+use crate::finger::model::{CentreSource, RCC_KEY};
+use crate::surrogate::Model;
 use crate::trial::run::RigError;
-use crate::trial::{Grasp, Rig};
+use crate::{
+    DENSITY_KEY, DIRECTION_KEY, Design, EngineKind, Finger, FingerSource, Grasp, Outcome,
+    Prediction, Rig, Robot, StartRule, Task,
+};
 use input::numbers::DESIGN;
 use input::units::N_PER_MM;
 use parameters::{Parameter, numbers};

@@ -11,7 +11,7 @@ pub mod template;
 pub mod tolerance;
 pub mod uncertainty;
 
-use crate::outcome::Outcome;
+use crate::Outcome;
 use crate::surrogate::null_is_nan;
 use ask_tell::statistics::{Moments, normal_quantile};
 use serde::{Deserialize, Serialize};

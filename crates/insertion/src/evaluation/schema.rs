@@ -1,7 +1,7 @@
 //! Serialized form of an evaluation: its keys in JSON, in the journal of a study and in tables.
 
 use super::{OffsetStep, RobustRange, SuccessRate, Window, grid_mm};
-use crate::outcome::Outcome;
+use crate::Outcome;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 #[derive(Serialize, Deserialize)]

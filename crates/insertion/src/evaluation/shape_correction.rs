@@ -7,9 +7,7 @@
 
 use crate::finger::file::is_shape;
 use crate::finger::model::ComputedFingers;
-use crate::space::Design;
-use crate::stiffness::Measurement;
-use crate::surrogate::{Estimate, Prediction};
+use crate::{Design, Estimate, Measurement, Prediction};
 use ask_tell::statistics::Moments;
 use finray::mechanics::FingerStiffness;
 use input::InputError;
@@ -78,8 +76,8 @@ fn scatter(fingers: &ComputedFingers, measured: &[Measurement]) -> Result<[f64; 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fixtures::{finger_file, predicted};
     use crate::space::{DENSITY_KEY, DIRECTION_KEY};
+    use crate::tests::fixtures::{finger_file, predicted};
     use input::units::N_PER_MM;
 
     const MODULUS: &str = "finger.material.modulus_gpa";

@@ -6,9 +6,8 @@
 
 use super::tolerance::{self, OFFSET_LIMIT_STEPS, Search, offset};
 use super::{Evaluation, OffsetStep};
-use crate::finger::Finger;
-use crate::outcome::Outcome;
-use crate::trial::{Followed, Grasp, Grasped, Recording, Rig, Trial};
+use crate::trial::{Followed, Grasped};
+use crate::{Finger, Grasp, Outcome, Recording, Rig, Trial};
 use std::ops::Deref;
 use std::sync::atomic::AtomicBool;
 
@@ -102,9 +101,9 @@ impl Grasped for Shifted<Box<dyn Grasped + '_>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fixtures::finger;
+    use crate::tests::fake::FakeRig;
+    use crate::tests::fixtures::finger;
     use crate::trial::NEVER;
-    use crate::trial::fake::FakeRig;
 
     #[test]
     fn the_taught_start_is_the_middle_of_the_nearest_window() {

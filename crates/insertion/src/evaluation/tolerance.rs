@@ -1,9 +1,8 @@
 //! Search for the tolerance window of a finger: the range of shifted starts that insert.
 
-use crate::evaluation::{Evaluation, OFFSET_STEP_MM, OffsetStep, Window};
-use crate::finger::Finger;
-use crate::outcome::Outcome;
-use crate::trial::{Grasp, Grasped, Rig, Trial};
+use crate::evaluation::OFFSET_STEP_MM;
+use crate::trial::Grasped;
+use crate::{Evaluation, Finger, Grasp, OffsetStep, Outcome, Rig, Trial, Window};
 use input::units::MM;
 
 /// Largest offset tried, in grid steps: 15 mm, well beyond the widest published window (9 mm).
@@ -150,9 +149,9 @@ impl Evaluation {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fixtures::finger;
     use crate::outcome::FailureClass;
-    use crate::trial::fake::{Altered, FakeRig};
+    use crate::tests::fake::{Altered, FakeRig};
+    use crate::tests::fixtures::finger;
 
     #[test]
     fn both_searches_find_the_window_of_the_closed_form() {

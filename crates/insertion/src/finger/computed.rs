@@ -11,7 +11,7 @@
 //! is transformed to the same centre.
 
 use super::{Finger, Pad};
-use crate::surrogate::Prediction;
+use crate::Prediction;
 use crate::task::finger::Coupling;
 use finray::printed::PrintedFinger;
 use finray::stiffness::PlanarStiffness;
@@ -91,7 +91,7 @@ const ACROSS: [usize; 3] = [0, 4, 5];
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fixtures::{finger_file, refused};
+    use crate::tests::fixtures::{finger_file, refused};
     use nalgebra::Vector3;
 
     const SHOULDER: f64 = 3.5 * MM;

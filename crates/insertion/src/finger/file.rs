@@ -3,7 +3,7 @@
 //! A key is `finger.`, then the path in the finger file (`finger.skin.thickness_mm`); values are
 //! in the unit of the key. They are inserted into the file before its checks.
 
-use crate::space::{DENSITY_KEY, DIRECTION_KEY, Design};
+use crate::{DENSITY_KEY, DIRECTION_KEY, Design};
 use finray::infill;
 use finray::printed::PrintedFinger;
 use input::numbers::NumberFile;
@@ -61,7 +61,7 @@ impl FingerFile {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fixtures::{finger_file, refused};
+    use crate::tests::fixtures::{finger_file, refused};
     use input::units::MM;
 
     fn with(key: &str, value: f64) -> Result<PrintedFinger, InputError> {

@@ -2,12 +2,10 @@
 
 use super::Finger;
 use super::computed;
-use crate::finger::file::{FingerFile, infill, is_shape};
-use crate::space::{DIRECTION_KEY, Design};
-use crate::surrogate::Prediction;
-use crate::task::Task;
+use crate::finger::file::{infill, is_shape};
 use crate::task::finger::Coupling;
 use crate::value_name;
+use crate::{DIRECTION_KEY, Design, FingerFile, Prediction, Task};
 use finray::mechanics::{FingerStiffness, StiffnessCache};
 use input::units::MM;
 use input::{Check, InputError};

@@ -3,7 +3,8 @@
 use super::hull::Hull;
 use super::link::{Link, LinkKind};
 use super::{Estimate, Fitted, Prediction, Samples, computed, gp, leave_one_out, ridge, samples};
-use crate::stiffness::{Axis, Infill, Measurement, SurrogateError, check_all};
+use crate::Measurement;
+use crate::stiffness::{Axis, Infill, SurrogateError, check_all};
 use finray::printed::PrintedFinger;
 use input::InputError;
 use input::units::N_PER_MM;

@@ -1,7 +1,7 @@
 use super::computed::ComputedStiffness;
 use super::*;
-use crate::fixtures::refused;
 use crate::stiffness::{Measurement, SurrogateError, parse};
+use crate::tests::fixtures::refused;
 use ask_tell::statistics::Moments;
 use finray::printed::PrintedFinger;
 use input::shipped::{FINGERS, STIFFNESS};

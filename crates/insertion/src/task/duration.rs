@@ -55,8 +55,8 @@ impl Strategy {
 
 #[cfg(test)]
 mod tests {
-    use crate::fixtures::{refused, task_file};
     use crate::task::Task;
+    use crate::tests::fixtures::{refused, task_file};
 
     #[test]
     fn a_trial_that_takes_too_long_is_refused_with_its_longest_phase() {

@@ -340,7 +340,7 @@ mod tests {
     /// The key's four edges at the tip and the slot's four at its mouth are round, nothing else is.
     #[test]
     fn the_edges_that_lead_in_are_rounded() {
-        let task = crate::fixtures::task("ket8");
+        let task = crate::tests::fixtures::task("ket8");
         let round = task.rounded(0.3 * MM);
         let missing = |before: &Part, after: &Part| volume(&before.solid) - volume(&after.solid);
         // Along the 30 mm about the tip, but for the corners, where two cuts meet.
@@ -360,7 +360,7 @@ mod tests {
     /// Only the mouth is cut, by half a square along each of its four sides.
     #[test]
     fn an_opening_is_chamfered_and_the_plug_is_not() {
-        let task = crate::fixtures::task("ket8");
+        let task = crate::tests::fixtures::task("ket8");
         let cut = task.chamfered(0.5 * MM);
         assert_eq!(task.plug, cut.plug);
         let all = |task: &Task| task.socket.iter().map(|part| volume(&part.solid)).sum::<f64>();

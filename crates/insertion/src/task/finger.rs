@@ -147,8 +147,8 @@ fn coupling(check: Check<'_>, raw: &[RawCoupling]) -> Result<Option<Coupling>, I
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fixtures::{refused, task_file};
     use crate::task::Task;
+    use crate::tests::fixtures::{refused, task_file};
 
     fn parse(finger: &str) -> Result<FingerModel, String> {
         let text = task_file("usb").text.replace("[friction]", &format!("{finger}\n[friction]"));

@@ -44,9 +44,9 @@ pub fn mating_force(check: Check<'_>, raw: RawMatingForce) -> Result<MatingForce
 
 #[cfg(test)]
 mod tests {
-    use crate::fixtures::{finger, refused, rig, task, task_file};
     use crate::outcome::{FailureClass, Outcome};
     use crate::task::Task;
+    use crate::tests::fixtures::{finger, refused, rig, task, task_file};
     use crate::trial::{Grasp, Rig, Trial};
     use input::InputError;
     use input::units::MM;

@@ -64,7 +64,7 @@ pub fn without_parts(text: &str) -> &str {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fixtures::{refused, task_file};
+    use crate::tests::fixtures::{refused, task_file};
 
     /// A shipped task whose socket is in a parts file is the same task; a changed parts file is refused.
     #[test]

@@ -11,8 +11,7 @@
 //!    mated pose: class 2, "a failed search phase in which the plug is missed" (paper, Sec. "Failure Cases").
 //! 4. Otherwise the part entered and is not seated, whether fingers still touch it or not: class 3.
 
-use crate::outcome::{FailureClass, Outcome};
-use crate::task::{Stage, Task};
+use crate::{FailureClass, Outcome, Stage, Task};
 use contact::scene::Pose;
 use nalgebra::Vector3;
 
@@ -102,8 +101,8 @@ pub fn classify(FinalState { seated, gripped, lost_in, entered }: FinalState) ->
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fixtures::task;
     use crate::task::Mated;
+    use crate::tests::fixtures::task;
     use FailureClass::*;
 
     /// 2 x 5 header: a pitch of 2.54 mm aside is deep and upright, and has missed.

@@ -1,9 +1,10 @@
 //! Conditions of a trial: deviations of socket, start, friction and grasp from the task file.
 
 use super::cell::WorkCell;
-use crate::finger::{Pad, ROOF_GAP};
+use crate::finger::ROOF_GAP;
+use crate::task::PadTorsion;
 use crate::task::geometry::other_axes;
-use crate::task::{PadTorsion, Part, Solid, Task};
+use crate::{Pad, Part, Solid, Task};
 use contact::scene::Pose;
 use nalgebra::Vector3;
 
@@ -114,7 +115,7 @@ impl Solid {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fixtures::task;
+    use crate::tests::fixtures::task;
     use input::shipped::TASKS;
     use input::units::MM;
 

@@ -2,10 +2,8 @@
 
 use super::Rig;
 use super::run::{EngineRig, RigError};
-use crate::finger::Finger;
-use crate::robot::Robot;
-use crate::task::Task;
 use crate::value_name;
+use crate::{Finger, Robot, Task};
 use contact::Engine;
 use contact::direct::Direct;
 #[cfg(feature = "mujoco")]
@@ -99,7 +97,7 @@ impl EngineKind {
     ) -> Result<Box<dyn Rig>, RigError> {
         #[cfg(feature = "fake-engine")]
         if self == EngineKind::Fake {
-            return Ok(Box::new(super::fake::FakeRig::from_environment()));
+            return Ok(Box::new(crate::tests::fake::FakeRig::from_environment()));
         }
         Ok(Box::new(EngineRig::with(task.clone(), robot, finger, self.build(step_factor))?))
     }

@@ -1,7 +1,6 @@
 //! Trial: one simulated insertion attempt.
 
-use crate::finger::Finger;
-use crate::outcome::Outcome;
+use crate::{Finger, Outcome};
 use contact::ContactPoint;
 use contact::scene::Pose;
 use input::units::MM;
@@ -14,8 +13,6 @@ pub mod cell;
 mod classify;
 mod conditions;
 pub mod engine;
-#[cfg(any(test, feature = "fake-engine"))]
-pub mod fake;
 mod monitor;
 mod motion;
 pub mod picture;

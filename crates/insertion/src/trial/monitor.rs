@@ -1,7 +1,7 @@
 //! Monitors of an attempt: force, grip, and whether the leading edge is inside the opening.
 
 use super::classify::within;
-use crate::task::Task;
+use crate::Task;
 use crate::task::geometry::hull;
 use contact::scene::Pose;
 use input::units::MM;
@@ -106,7 +106,7 @@ impl LeadingEdge {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fixtures::task;
+    use crate::tests::fixtures::task;
     use input::units::DEG;
 
     fn inside(name: &str, at_mm: [f64; 3], tilt_deg: f64) -> bool {

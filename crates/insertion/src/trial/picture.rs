@@ -2,9 +2,8 @@
 //! seen along x (y-z plane: compliance and assembly directions) and along y (x-z plane).
 
 use super::{PhaseEnd, Trial};
-use crate::finger::Pad;
 use crate::task::geometry::convex_outline;
-use crate::task::{Part, Task};
+use crate::{Pad, Part, Task};
 use ask_tell::statistics::span;
 use contact::ContactPoint;
 use contact::scene::{Geom, Pose};

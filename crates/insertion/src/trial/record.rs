@@ -3,8 +3,7 @@
 
 use super::classify::Placement;
 use super::{Poses, Trial};
-use crate::outcome::{FailureClass, Outcome};
-use crate::task::Stage;
+use crate::{FailureClass, Outcome, Stage};
 use contact::ContactPoint;
 use contact::scene::Pose;
 use input::units::{DEG, MM};

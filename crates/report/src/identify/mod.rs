@@ -13,7 +13,7 @@ use calibration::identify::misfit::{Misfit, Validation, misfits};
 use calibration::identify::question::{Compared, IdentificationResult};
 use calibration::identify::unknown::{Unknown, ValueOrigin};
 use input::units::{MM, N_PER_MM};
-use insertion::surrogate::Estimate;
+use insertion::Estimate;
 use serde_json::{Map, Value, json};
 
 /// Warning if fewer attempts are simulated to end as measured than before the identification.

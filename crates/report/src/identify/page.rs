@@ -15,7 +15,7 @@ use calibration::identify::question::{Compared, IdentificationResult, Identified
 use calibration::identify::smoother::Smoothed;
 use calibration::identify::unknown::{Unknown, ValueOrigin};
 use input::units::MM;
-use insertion::outcome::Outcome;
+use insertion::Outcome;
 use maud::{Markup, PreEscaped, html};
 use parameters::{Parameter, Scale, Transform};
 use plotters::prelude::Color;

@@ -1,13 +1,13 @@
 use super::html;
 use calibration::identify::check::Remark;
 use calibration::identify::curves::Curves;
-use calibration::identify::fixtures::synthetic;
 use calibration::identify::formulas::{Friction, Slide};
 use calibration::identify::log::Run;
 use calibration::identify::misfit::Validation;
 use calibration::identify::question::{Compared, IdentificationResult, Identified};
 use calibration::identify::replay::Logged;
 use calibration::identify::smoother::Smoothed;
+use calibration::identify::tests::fixtures::synthetic;
 use calibration::identify::unknown::{Unknown, ValueOrigin};
 use input::shipped::{PRIORS, ROBOTS};
 use insertion::evaluation::cell::Priors;

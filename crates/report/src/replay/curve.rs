@@ -5,7 +5,7 @@ use crate::ReportError;
 use crate::chart::{Area, DrawResult, axes, legend, padded_range, render};
 use crate::marks::{PointMark, line, points};
 use crate::theme::{BLUE, MUTED, RED};
-use insertion::outcome::Outcome;
+use insertion::Outcome;
 use plotters::prelude::{Color, SeriesLabelPosition};
 
 /// Plots the contact force on the plug against the depth of its tip, from just before the first contact, as an SVG.

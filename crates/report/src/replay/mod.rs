@@ -9,10 +9,7 @@ use super::explore::embedded;
 pub use curve::svg as curve_svg;
 pub use table::csv;
 
-use insertion::evaluation::OffsetStep;
-use insertion::finger::Pad;
-use insertion::task::Task;
-use insertion::trial::Recording;
+use insertion::{OffsetStep, Pad, Recording, Task};
 use maud::{PreEscaped, html};
 
 /// Recorded trial of a task.

@@ -2,7 +2,7 @@
 //! deflection of a finger.
 
 use input::units::MM;
-use insertion::trial::Recording;
+use insertion::Recording;
 use insertion::trial::record::Frame;
 
 const HEADER: &str = "time_s,phase,force_n,force_x_n,force_y_n,force_z_n,depth_mm,tilt_deg,slip_mm,\

@@ -10,10 +10,8 @@ mod tests;
 use super::pairs::{self, WindowPair};
 use super::{Setting, Subject, TaskSettings, each};
 use ask_tell::statistics::{mean, quantile, sorted};
-use insertion::evaluation::{OffsetStep, Window, grid_mm, tolerance};
-use insertion::outcome::Outcome;
-use insertion::stiffness::Measurement;
-use insertion::trial::{Grasp, Trial};
+use insertion::evaluation::tolerance;
+use insertion::{Grasp, Measurement, OffsetStep, Outcome, Trial, Window, grid_mm};
 use report::text_table;
 use std::collections::BTreeSet;
 

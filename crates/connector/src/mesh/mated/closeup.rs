@@ -6,7 +6,8 @@ use crate::picture::{INSIDE, PANEL, VIEWS};
 use contact::scene::Pose;
 use drawing::{Drawing, Font, Style, View};
 use input::units::MM;
-use insertion::task::{Part, geometry};
+use insertion::Part;
+use insertion::task::geometry;
 use nalgebra::{Point2, Point3};
 
 /// Distance from the point to the sides of a panel, m.

@@ -6,7 +6,7 @@ use crate::body::ConvexBody;
 use crate::mesh::Triangle;
 use contact::scene::Pose;
 use input::units::MM;
-use insertion::task::Part;
+use insertion::Part;
 use nalgebra::{Point3, Translation3, UnitQuaternion, Vector3};
 use parry::bounding_volume::{Aabb, BoundingVolume};
 use parry::partitioning::{Bvh, BvhBuildStrategy};

@@ -6,8 +6,7 @@ use crate::draft::{Size, block};
 use crate::hold::{PAD_X, SEAM, pad_z};
 use crate::mesh::Triangle;
 use input::units::MM;
-use insertion::finger::Pad;
-use insertion::task::Part;
+use insertion::{Pad, Part};
 use nalgebra::Point3;
 
 /// Smallest height of the faces between the pads, m.

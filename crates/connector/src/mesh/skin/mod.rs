@@ -10,7 +10,7 @@ use super::surface::snap;
 use crate::body::{extent, width};
 use facets::Facets;
 use input::units::MM;
-use insertion::task::Solid;
+use insertion::Solid;
 use insertion::task::geometry::{MIN_VOLUME, hull, volume};
 use nalgebra::{Point3, Vector3};
 use parry::bounding_volume::{Aabb, BoundingVolume};

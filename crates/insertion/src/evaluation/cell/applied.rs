@@ -1,14 +1,10 @@
 //! Application of parameter values to task, finger and robot.
 
 use super::Priors;
-use crate::evaluation::evaluator::{Evaluator, Scenario};
-use crate::evaluation::template::{DesignError, Template};
 use crate::finger::file::is_shape;
-use crate::finger::model::FingerSource;
-use crate::robot::{Drive, Robot};
-use crate::space::Design;
-use crate::surrogate::Prediction;
+use crate::robot::Drive;
 use crate::trial::Conditions;
+use crate::{Design, DesignError, Evaluator, FingerSource, Prediction, Robot, Scenario, Template};
 use input::numbers::{DESIGN, unknown_path};
 use input::units::{MM, N_PER_MM};
 use input::{Check, InputError};

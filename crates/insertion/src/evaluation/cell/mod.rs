@@ -5,7 +5,7 @@ mod applied;
 
 pub(super) use applied::change;
 
-use crate::robot::Robot;
+use crate::Robot;
 use input::{Check, InputError, read};
 use parameters::Parameter;
 use serde::{Deserialize, Serialize};
@@ -103,7 +103,7 @@ impl Priors {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fixtures::{refused, robot, robot_file};
+    use crate::tests::fixtures::{refused, robot, robot_file};
     use input::shipped::{LEVERS, PRIORS};
 
     #[test]

@@ -97,7 +97,7 @@ impl FromStr for Aggregate {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fixtures::refused;
+    use crate::tests::fixtures::refused;
 
     #[test]
     fn one_value_for_several() {

@@ -1,7 +1,7 @@
 //! Constraints on a design, for example `peak-force<=30`.
 
 use super::Measure;
-use crate::evaluation::Evaluation;
+use crate::Evaluation;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
@@ -104,7 +104,7 @@ impl FromStr for Constraint {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fixtures::refused;
+    use crate::tests::fixtures::refused;
 
     #[test]
     fn violations_are_shares_of_the_limit() {

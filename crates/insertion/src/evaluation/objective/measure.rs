@@ -1,7 +1,6 @@
 //! Measures: quantities of an evaluation that can be optimized or constrained, and their units.
 
-use crate::evaluation::Evaluation;
-use crate::outcome::Outcome;
+use crate::{Evaluation, Outcome};
 use ask_tell::gp::DEFAULT_NOISE_FLOOR;
 use std::fmt;
 use std::str::FromStr;

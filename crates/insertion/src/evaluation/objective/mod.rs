@@ -8,8 +8,8 @@ pub use aggregate::{Aggregate, AggregateKind};
 pub use constraint::{Bound, Constraint};
 pub use measure::Measure;
 
-use crate::evaluation::{Evaluation, OFFSET_STEP_MM};
-use crate::outcome::Outcome;
+use crate::evaluation::OFFSET_STEP_MM;
+use crate::{Evaluation, Outcome};
 use serde::{Deserialize, Serialize};
 use std::cmp::Ordering;
 use std::fmt;
@@ -220,9 +220,9 @@ mod tests {
     use super::measure::tests::evaluation;
     use super::*;
     use crate::evaluation::tolerance::{self, Search};
-    use crate::fixtures::finger;
     use crate::outcome::FailureClass;
-    use crate::trial::fake::FakeRig;
+    use crate::tests::fake::FakeRig;
+    use crate::tests::fixtures::finger;
 
     fn goals(objectives: &str, constraints: &[&str], aggregate: Aggregate) -> Goals {
         Goals {

@@ -4,7 +4,7 @@
 //! all repeats insert. Offsets between the two ends are not repeated.
 
 use super::repeat::Repeats;
-use crate::evaluation::{OffsetStep, Window, grid_mm};
+use crate::{OffsetStep, Window, grid_mm};
 use serde::{Deserialize, Serialize};
 
 /// Number of repeats at each end of the window.
@@ -86,10 +86,10 @@ fn outermost_step(
 mod tests {
     use super::*;
     use crate::evaluation::tolerance::{Search, evaluate, offset};
-    use crate::fixtures::finger;
     use crate::outcome::Outcome;
+    use crate::tests::fake::FakeRig;
+    use crate::tests::fixtures::finger;
     use crate::trial::Grasp;
-    use crate::trial::fake::FakeRig;
 
     /// The lower end, -3.33 mm, moves with friction to -3.03 mm; the upper with the start alone.
     #[test]

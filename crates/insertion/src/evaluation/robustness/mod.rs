@@ -4,16 +4,12 @@ pub mod firm;
 pub mod race;
 pub mod repeat;
 
-use crate::evaluation::cell::Priors;
-use crate::evaluation::tolerance::{self, Search};
+use crate::evaluation::tolerance;
 use crate::evaluation::uncertainty::{
     Draw, RobustSettings, Statistic, SuccessSettings, Uncertainty, draws,
 };
-use crate::evaluation::{Evaluation, RobustRange, SuccessRate};
-use crate::finger::Finger;
-use crate::outcome::Outcome;
-use crate::surrogate::Prediction;
-use crate::trial::{Grasp, Rig};
+use crate::evaluation::{RobustRange, SuccessRate};
+use crate::{Evaluation, Finger, Grasp, Outcome, Prediction, Priors, Rig, Search};
 use ask_tell::statistics::{mean, sorted};
 use race::Race;
 use rayon::prelude::*;
@@ -131,8 +127,8 @@ mod tests {
     use super::*;
     use crate::evaluation::grid_mm;
     use crate::evaluation::tests::ranges;
-    use crate::fixtures::{finger, predicted, typical};
-    use crate::trial::fake::{FakeRig, window_mm};
+    use crate::tests::fake::{FakeRig, window_mm};
+    use crate::tests::fixtures::{finger, predicted, typical};
     use input::units::MM;
 
     /// Draws, from the shipped distribution, of a finger with 3 N/mm and this assembly stiffness, N/mm.

@@ -4,8 +4,8 @@
 //! race) once its rate would stay below the target rate even if all remaining draws inserted. The point of
 //! elimination depends only on its own outcomes, the target rate and the order of the draws.
 
+use crate::Outcome;
 use crate::evaluation::SuccessRate;
-use crate::outcome::Outcome;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 

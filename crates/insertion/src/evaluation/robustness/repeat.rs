@@ -1,9 +1,8 @@
 //! Repeats of a trial under small random changes of friction and start.
 
 use crate::evaluation::tolerance;
-use crate::evaluation::{OffsetStep, Window, grid_mm};
-use crate::outcome::Outcome;
-use crate::trial::{Conditions, Grasp, Grasped, Rig};
+use crate::trial::{Conditions, Grasped};
+use crate::{Grasp, OffsetStep, Outcome, Rig, Window, grid_mm};
 use ask_tell::stream::stream;
 use input::units::MM;
 use rand::RngExt;
@@ -151,8 +150,8 @@ impl Bands {
 mod tests {
     use super::*;
     use crate::evaluation::tolerance::Search;
-    use crate::fixtures::finger;
-    use crate::trial::fake::FakeRig;
+    use crate::tests::fake::FakeRig;
+    use crate::tests::fixtures::finger;
 
     /// The lower end, -3.33 mm, moves by a tenth with friction; the upper one with the start alone.
     #[test]

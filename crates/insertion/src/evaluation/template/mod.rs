@@ -14,13 +14,9 @@ mod space;
 
 pub use space::within_limits;
 
-use crate::finger::Finger;
 use crate::finger::file::is_shape;
-use crate::finger::model::FingerSource;
-use crate::space::{DENSITY_KEY, DIRECTION_KEY, Design};
-use crate::surrogate::Prediction;
-use crate::task::Task;
 use crate::trial::run::RigError;
+use crate::{DENSITY_KEY, DIRECTION_KEY, Design, Finger, FingerSource, Prediction, Task};
 use input::numbers::{DESIGN, NumberFile};
 use input::{Document, InputError, Place, Placed};
 use parameters::Path;
@@ -134,8 +130,8 @@ impl Template {
 mod tests {
     use super::*;
     use crate::finger::Finger;
-    use crate::fixtures::{refused, task_file, template};
     use crate::task::{Ending, TouchDetection};
+    use crate::tests::fixtures::{refused, task_file, template};
     use input::shipped::TASKS;
     use input::units::{DEG, MM};
     use std::collections::BTreeMap;

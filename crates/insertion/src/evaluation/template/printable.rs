@@ -2,10 +2,9 @@
 
 use super::is_infill;
 use super::space::{each_corner, each_extreme};
-use crate::evaluation::evaluator::Evaluator;
-use crate::finger::file::{FingerFile, infill, is_shape};
-use crate::finger::model::{FingerSource, RCC_KEY, TILTING_KEY};
-use crate::space::{Space, Variable};
+use crate::finger::file::{infill, is_shape};
+use crate::finger::model::{RCC_KEY, TILTING_KEY};
+use crate::{Evaluator, FingerFile, FingerSource, Space, Variable};
 use finray::geometry::Geometry;
 use input::{Check, InputError};
 
@@ -60,7 +59,7 @@ mod tests {
         let file = SPACES.iter().find(|space| space.name == "finger").unwrap();
         assert!(file.text.contains(change[0]));
         let space = Space::parse(&file.text.replace(change[0], change[1]), file.file).unwrap();
-        check(&space, file.file, &crate::fixtures::finger_file())
+        check(&space, file.file, &crate::tests::fixtures::finger_file())
     }
 
     #[test]

@@ -2,11 +2,9 @@
 
 use super::{DesignError, Template, is_infill};
 use crate::finger::file::is_shape;
-use crate::finger::model::FingerSource;
-use crate::space::{DENSITY_KEY, DIRECTION_KEY, Design, Space, Variable, corners, is_of_task};
-use crate::surrogate::Prediction;
-use crate::task::Task;
+use crate::space::{corners, is_of_task};
 use crate::trial::run::RigError;
+use crate::{DENSITY_KEY, DIRECTION_KEY, Design, FingerSource, Prediction, Space, Task, Variable};
 use input::units::MM;
 use input::{Check, InputError, Place};
 
@@ -114,7 +112,7 @@ impl Template {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fixtures::{robot, template};
+    use crate::tests::fixtures::{robot, template};
     use crate::trial::run::EngineRig;
     use contact::direct::Direct;
     use input::shipped::{ROBOTS, SPACES, TASKS};

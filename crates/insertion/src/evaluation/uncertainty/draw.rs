@@ -1,9 +1,8 @@
 //! Random draws of the errors of an insertion.
 
 use super::Errors;
-use crate::finger::Finger;
-use crate::surrogate::{Estimate, Prediction};
-use crate::trial::{Conditions, Grasp};
+use crate::trial::Conditions;
+use crate::{Estimate, Finger, Grasp, Prediction};
 use ask_tell::normal::StandardNormal;
 use ask_tell::stream::stream;
 use input::units::{DEG, MM};
@@ -148,7 +147,7 @@ fn lognormal(relative: f64, z: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::evaluation::uncertainty::YawSpread;
-    use crate::fixtures::{predicted, typical};
+    use crate::tests::fixtures::{predicted, typical};
     use ask_tell::statistics::Moments;
     use parameters::numbers::{Kind, paths};
 

@@ -5,9 +5,8 @@ mod draw;
 
 pub use draw::{Draw, draws};
 
-use crate::evaluation::cell::Priors;
-use crate::evaluation::tolerance::Search;
 use crate::finger::file::is_shape;
+use crate::{Priors, Search};
 use input::shipped::UNCERTAINTIES;
 use input::units::read::{deg, mm, percent};
 use input::{Check, Document, InputError};
@@ -250,7 +249,7 @@ impl RawRobust {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fixtures::refused;
+    use crate::tests::fixtures::refused;
     use input::shipped::UNCERTAINTIES;
 
     #[test]

@@ -1,7 +1,7 @@
 //! Trial along the commanded trajectory of a log, and the friction probe.
 
 use super::{Attempt, Stop};
-use crate::task::Stage;
+use crate::Stage;
 use crate::trial::motion::{Move, Tcp};
 use crate::trial::record::{LOG_STEP_S, Trace};
 use input::units::MM;

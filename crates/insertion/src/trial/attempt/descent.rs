@@ -1,7 +1,7 @@
 //! Descent above the socket, shared by all offsets.
 
 use super::Attempt;
-use crate::task::{Ending, Stage};
+use crate::{Ending, Stage};
 use contact::scene::BodyId;
 use input::units::MM;
 

@@ -1,8 +1,7 @@
 //! Trial with moves commanded by the caller, for learning a search strategy.
 
 use super::{Attempt, REST, Stop};
-use crate::outcome::Outcome;
-use crate::task::Stage;
+use crate::{Outcome, Stage};
 use input::units::{DEG, MM};
 use nalgebra::Vector3;
 
@@ -119,8 +118,8 @@ impl Driven {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fixtures::{finger, rig, task};
     use crate::outcome::FailureClass;
+    use crate::tests::fixtures::{finger, rig, task};
     use crate::trial::Rig;
 
     fn driven() -> Driven {

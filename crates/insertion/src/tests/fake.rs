@@ -7,9 +7,8 @@
 //! tilt of the start, by the shift of the start along x and by the downward shift of the part in the
 //! gripper, and outward by the added clearance.
 
-use super::{Conditions, Followed, Grasp, Grasped, Rig, Trial};
-use crate::finger::Finger;
-use crate::outcome::{FailureClass, Outcome};
+use crate::trial::{Conditions, Followed, Grasped};
+use crate::{FailureClass, Finger, Grasp, Outcome, Rig, Trial};
 use input::units::{DEG, MM, N_PER_MM};
 use std::sync::atomic::Ordering;
 

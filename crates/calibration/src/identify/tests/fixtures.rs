@@ -1,10 +1,10 @@
 //! Synthetic log for tests.
 
-use super::log::{Log, LogSample};
+use crate::identify::log::{Log, LogSample};
 use ask_tell::normal::StandardNormal;
 use ask_tell::stream::stream;
 use input::units::{DEG, MM};
-use insertion::trial::Tcp;
+use insertion::Tcp;
 use nalgebra::Vector3;
 use rand::RngExt;
 

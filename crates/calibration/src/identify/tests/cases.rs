@@ -1,10 +1,10 @@
-use super::check::{self, Remark};
-use super::curves::{Curves, STEP_S};
 use super::fixtures::synthetic;
-use super::frame::Frame;
-use super::log::{Log, LogSample, Run};
-use super::touch::{bias, touch};
-use super::{read, runs};
+use crate::identify::check::{self, Remark};
+use crate::identify::curves::{Curves, STEP_S};
+use crate::identify::frame::Frame;
+use crate::identify::log::{Log, LogSample, Run};
+use crate::identify::touch::{bias, touch};
+use crate::identify::{read, runs};
 use input::shipped::{ROBOTS, TASKS};
 use input::units::{MM, N_PER_MM};
 use insertion::finger::Finger;

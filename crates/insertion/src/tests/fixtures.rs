@@ -1,13 +1,8 @@
 //! Shipped inputs, fingers and predictions for tests.
 
-use crate::evaluation::template::Template;
 use crate::evaluation::uncertainty::Uncertainty;
-use crate::finger::Finger;
-use crate::finger::file::FingerFile;
-use crate::robot::Robot;
-use crate::surrogate::{Estimate, Prediction};
-use crate::task::Task;
 use crate::trial::run::EngineRig;
+use crate::{Estimate, Finger, FingerFile, Prediction, Robot, Task, Template};
 use contact::direct::Direct;
 use input::shipped::{FINGERS, ROBOTS, Shipped, TASKS, UNCERTAINTIES};
 use input::units::N_PER_MM;

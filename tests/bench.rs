@@ -242,7 +242,7 @@ fn a_finger_of_a_task_of_ones_own_is_measured_without_naming_it_twice() {
     let folder = Studies::new();
     let few = "--engine fake --simulations 24 --samples 20 --measurements";
     let line = |line: &str| run(command(&[]).args(line.split_whitespace()).current_dir(&folder.0));
-    // A file that is not there is empty for `next` alone.
+    // For `next` alone, a missing file is empty: the default file and that of the project.
     let next = line(&format!("next --task ket8 {few} bench.csv"));
     let words = "ket8: nothing measured yet (bench.csv does not exist); by simulation alone\n";
     assert!(next.succeeds().starts_with(words), "{}", next.stdout);
@@ -252,6 +252,12 @@ fn a_finger_of_a_task_of_ones_own_is_measured_without_naming_it_twice() {
         .fails(2, &["bench.csv: has no measurements yet", "give --task"]);
     line(&format!("calibrate --task ket8 {few} bench.csv")).fails(2, &["bench.csv: cannot read"]);
     line(&format!("next --task ket8 {few} bensh")).fails(2, &["unknown measurement file `bensh`"]);
+    let cannot_read = ["bensh.csv: cannot read the measurement file"];
+    line(&format!("next --task ket8 {few} bensh.csv")).fails(2, &cannot_read);
+    folder.file("finger-opt.toml", "measurements = \"mine.csv\"\n");
+    let words = "nothing measured yet (mine.csv does not exist)";
+    line("next --task ket8 --engine fake --simulations 24 --samples 20").says(&[words]);
+    folder.file("finger-opt.toml", "");
     assert!(!folder.dir("bench.csv").exists());
     // The task is that of the lines, and its file that of the comment line.
     let own = include_str!("../tasks/ket8.toml").replace("\"ket8\"", "\"mine\"");

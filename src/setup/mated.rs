@@ -260,6 +260,11 @@ fn described(
         let why = format!("{parts} parts in {} more places, less deep (--json)", more.len());
         findings.push(("overlap", why));
     }
+    if made.interference.iter().any(|of| !of.cut_back) {
+        let how = "parts left out exert no force; give the friction of contact springs in the task file, in a table \
+                   [mating_force] with, for example, depth_mm = [0, 2, 6] (of the tip) and force_n = [0, 12, 8]";
+        findings.push(("springs", how.to_owned()));
+    }
     findings
 }
 

@@ -23,7 +23,7 @@ use std::f64::consts::FRAC_PI_2;
 fn stiffness(text: &str) -> Result<f64, String> {
     let n_per_mm = text.parse().unwrap_or(f64::NAN);
     let problem = numbers::problem("stiffness_compliance_n_per_mm", n_per_mm);
-    problem.map_or(Ok(n_per_mm), |problem| Err(problem + " N/mm"))
+    problem.map_or(Ok(n_per_mm), Err)
 }
 
 /// Parses a setting, `KEY=VALUE`.
@@ -61,10 +61,17 @@ impl InfillRequest {
             return Err(Failure::usage("give --density and --direction"));
         };
         match numbers::problem(DENSITY_KEY, density) {
-            Some(problem) => Err(Failure::usage(format!("--density: {problem} (percent)"))),
+            Some(problem) => Err(Failure::usage(format!("--density: {problem}"))),
             None => Ok([density, direction]),
         }
     }
+}
+
+/// Checks that a direction is not in radians: that it is 90 degrees in radians at least, or a multiple of `step`.
+pub(crate) fn in_degrees(direction: f64, step: f64) -> Result<(), Failure> {
+    wrong_unit::angle(direction, FRAC_PI_2, step).map_or(Ok(()), |radians| {
+        Err(Failure::usage(format!("--direction: {}", radians.join(" "))))
+    })
 }
 
 /// Finger, by its infill or by its stiffness.
@@ -112,13 +119,9 @@ impl FingerRequest {
     pub(crate) fn choose(&self, setup: &Setup) -> Result<ChosenFinger, Failure> {
         let chosen = self.choose_with(setup, &setup.evaluator)?;
         let of_space = setup.space.parameters.iter().find(|one| one.key == DIRECTION_KEY);
-        let direction = self.infill.direction.zip(of_space);
-        let radians = direction.and_then(|(value, one)| {
-            let in_space = (one.low..=one.high).contains(&(value / DEG));
-            wrong_unit::angle(value, FRAC_PI_2, one.step).filter(|_| in_space)
-        });
-        if let Some(radians) = radians {
-            return Err(Failure::usage(format!("--direction: {}", radians.join(" "))));
+        let of_space = |value| of_space.filter(|one| (one.low..=one.high).contains(&(value / DEG)));
+        if let Some((value, one)) = self.infill.direction.and_then(|v| Some((v, of_space(v)?))) {
+            in_degrees(value, one.step)?;
         }
         if !chosen.set.0.is_empty() {
             check_units(&setup.only_task()?.task, &chosen.scenario.task)?;
@@ -213,13 +216,16 @@ fn check(setup: &Setup, flag: &str, key: &str, value: f64) -> Result<(), Failure
     match parameters.iter().find(|parameter| parameter.key == key) {
         // NaN is outside.
         Some(parameter) if (parameter.low..=parameter.high).contains(&value) => Ok(()),
-        Some(parameter) => Err(Failure::usage(format!(
-            "{flag} {}: {key} must lie between {} and {} in the space `{}`",
-            shown(value),
-            parameter.low,
-            parameter.high,
-            setup.space.name
-        ))),
+        Some(parameter) => {
+            let (unit, bounds) = (parameter.key.unit(), [parameter.low, parameter.high]);
+            let other = wrong_unit::other(unit, value, bounds);
+            let other = other.map_or(String::new(), |other| format!("; {other}"));
+            let ([low, high], space) = (bounds, &setup.space.name);
+            Err(Failure::usage(format!(
+                "{flag} {}: {key} must lie between {low} and {high}{unit} in the space `{space}`{other}",
+                shown(value),
+            )))
+        }
         None => {
             Err(Failure::usage(format!("{flag}: the space `{}` has no {key}", setup.space.name)))
         }

@@ -11,7 +11,11 @@ fn mistaken(unit: &str) -> &'static [(&'static str, f64)] {
         " N" => &[("kN", 1000.0), ("grams-force", 9.81e-3)],
         " kg" => &[("g", 0.001)],
         " mm/s" => &[("m/s", 1000.0)],
-        _ => &[("metres", 1000.0), ("inches", 25.4), ("micrometres", 0.001), ("centimetres", 10.0)],
+        " %" => &[("fractions", 100.0)],
+        " mm" => {
+            &[("metres", 1000.0), ("inches", 25.4), ("micrometres", 0.001), ("centimetres", 10.0)]
+        }
+        _ => &[],
     }
 }
 
@@ -29,21 +33,24 @@ pub fn number(key: &str, value: f64, [low, high]: [f64; 2]) -> Option<WrongUnit>
 
 /// Returns advice on a number outside its range: the unit in which it is inside, or the range.
 pub fn remedy(unit: &str, value: f64, [low, high]: [f64; 2]) -> String {
+    other(unit, value, [low, high]).unwrap_or_else(|| format!("between {low} and {high}{unit}"))
+}
+
+/// Returns the unit in which a number outside its range is inside, if there is one.
+pub fn other(unit: &str, value: f64, [low, high]: [f64; 2]) -> Option<String> {
     let within = |(_, factor): &&(&str, f64)| (low..=high).contains(&(value * factor));
-    match mistaken(unit).iter().find(within) {
-        Some((other, factor)) => format!(
-            "the unit is{unit}; if the number was in {other}, multiply by {factor}: {:.2}{unit}",
-            value * factor
-        ),
-        None => format!("between {low} and {high}{unit}"),
-    }
+    let (other, factor) = mistaken(unit).iter().find(within)?;
+    Some(format!(
+        "the unit is{unit}; if the number was in {other}, multiply by {factor}: {:.2}{unit}",
+        value * factor
+    ))
 }
 
 /// Checks that an angle, degrees, is not in radians: that its magnitude is at least `least`, or it is a multiple of
 /// `step`.
 pub fn angle(degrees: f64, least: f64, step: f64) -> Option<WrongUnit> {
     let steps = degrees / step;
-    if degrees.abs() >= least || (steps - steps.round()).abs() < 1e-6 {
+    if degrees.is_nan() || degrees.abs() >= least || (steps - steps.round()).abs() < 1e-6 {
         return None;
     }
     let [degrees, least] = [degrees, least].map(|angle| (angle * 1e4).round() / 1e4);

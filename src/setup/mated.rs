@@ -13,7 +13,7 @@ use connector::mesh::{self, Files, SIZES, Surface, Triangle, reduced};
 use connector::plan::Family;
 use connector::write::origin;
 use input::counted;
-use input::units::MM;
+use input::units::{MM, mm};
 use insertion::task::Task;
 use nalgebra::{Point3, Vector3};
 use serde_json::{Value, json};
@@ -291,11 +291,11 @@ pub fn unit(
             [plug, _] => {
                 let at = usize::from(plug.is_some());
                 let read = given.map_or("mm, m or in".to_owned(), value);
-                let (body, long) = (BODIES[at], longest[at]);
+                let (body, long, [least, most]) = (BODIES[at], longest[at], SIZES.map(mm));
                 (
                     at,
                     format!(
-                        "read as {read}, the {body} ({long:.4} long) is shorter than 3 mm or longer than 300 mm, the size of connectors"
+                        "the {body} is {long:.4} {read} long; connectors are {least} to {most} mm long (--unit)"
                     ),
                 )
             }

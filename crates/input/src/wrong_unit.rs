@@ -2,7 +2,7 @@
 
 use crate::units::{DEG, without_unit};
 
-/// Problem and remedy of a number that is probably in a wrong unit: the bound that it violates, and the accepted values.
+/// Problem and remedy of a number that is probably in a wrong unit: its bounds, and the accepted values.
 pub type WrongUnit = [String; 2];
 
 /// Returns the units mistaken for this one, and their size in it.
@@ -25,9 +25,8 @@ pub fn number(key: &str, value: f64, [low, high]: [f64; 2]) -> Option<WrongUnit>
         return None;
     }
     let unit = Some(without_unit(key).1).filter(|unit| !unit.is_empty()).unwrap_or(" mm");
-    let (size, limit) = if value < low { ("less", low) } else { ("more", high) };
     let shown = (value * 1e4).round() / 1e4;
-    let problem = format!("{shown}{unit} is {size} than the plausible {limit}{unit}");
+    let problem = format!("{shown}{unit} is outside the plausible {low} to {high}{unit}");
     Some([problem, remedy(unit, value, [low, high])])
 }
 

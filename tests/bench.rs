@@ -9,12 +9,14 @@ fn measurements_are_added_checked_and_refused() {
     let add = |more: &str| {
         optimize_line(&format!("measure add {file} --task ket8 --density 20 --direction {more}"))
     };
+    optimize_line("measure add --out bench.csv").fails(2, &["'--out", "optimize measure add FILE"]);
     add("0 --range-mm 5.7").succeeds();
     add("10 --negative-mm -1.5 --failure-negative 3").succeeds();
     let before = folder.read("bench.csv");
     // What was typed is named, not the line that it would make.
     add("0 --range-mm 5.8").fails(2, &["error: --task: same finger as in line 2"]);
-    add("0.35 --range-mm 5.8").fails(2, &["error: --direction: 0.35 looks", "degrees, as in 20"]);
+    add("0.35 --range-mm 5.8")
+        .fails(2, &["error: --direction: 0.35 degrees", "0.35 rad is 20.1 degrees"]);
     let two = ["error: --set task.strategy.tilt_deg: `y` is not a number\n--range-mm: `x` is not"];
     add("5 --set task.strategy.tilt_deg=y --range-mm x").fails(2, &two);
     assert_eq!(folder.read("bench.csv"), before);

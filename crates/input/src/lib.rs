@@ -49,6 +49,11 @@ fn nearest_key<'a>(message: &'a str, more: &[&'a str]) -> Option<&'a str> {
     shipped::nearest(given, &accepted.collect::<Vec<_>>())
 }
 
+/// Returns the key that is missing according to an error of the parser.
+fn missing_key(error: &InputError) -> Option<&str> {
+    error.problem.rsplit_once("missing field `")?.1.strip_suffix('`')
+}
+
 /// Parsed TOML text from which typed values are read.
 #[derive(Debug, Clone)]
 pub struct Document<'a> {
@@ -116,17 +121,22 @@ impl<'a> Document<'a> {
         read.map_err(|mut error| {
             error.set_input(Some(self.text));
             let near = nearest_key(error.message(), self.taken);
-            let mut found = fault(self.file, self.text, &error, near);
-            let rest = || {
+            let rest = |word: &str, most: usize| {
                 let (at, mut text) = (error.span()?, self.text.to_owned());
                 let name = error.message().strip_prefix("unknown field `")?;
                 name.strip_prefix(text.get(at.clone())?)?;
-                // Reads on as if the key were the nearest one or, without one, its line a comment.
-                text.replace_range(at, near.unwrap_or("#"));
+                text.replace_range(at, word);
                 let document = Document::parse(&text, self.file).ok()?.without(self.taken);
-                document.deserialize::<T>(most.checked_sub(1)?).err()
+                document.deserialize::<T>(most).err()
             };
-            if let Some(rest) = rest() {
+            let more = most.checked_sub(1);
+            // If no key is similar, it may be the one that is missing.
+            let without = more.filter(|_| near.is_none()).and_then(|_| rest("#", 0));
+            let missing = without.as_ref().and_then(missing_key);
+            let missing = missing.filter(|key| error.message().contains(&format!("`{key}`")));
+            let mut found = fault(self.file, self.text, &error, near.or(missing));
+            // Reads on as if the key were the nearest one or, without one, its line a comment.
+            if let Some(rest) = more.and_then(|more| rest(near.or(missing).unwrap_or("#"), more)) {
                 found.problem += &format!("\n{}", rest.problem);
             }
             found
@@ -319,8 +329,12 @@ mod tests {
         assert_eq!(error.place().line, Some(2));
         let text = error.to_string();
         assert!(text.ends_with("expected `plug_socket`; did you mean `plug_socket`?"), "{text}");
-        let error = read::<Friction>("other = 0.3", "task.toml").unwrap_err().to_string();
-        assert!(!error.contains("mean"), "{error}");
+        let error = |text: &str| read::<Friction>(text, "task.toml").unwrap_err().to_string();
+        let text = error("plug_socket = 0.3\nother = 0.3");
+        assert!(!text.contains("mean"), "{text}");
+        // The only missing key, though it is not similar.
+        let text = error("other = 0.3");
+        assert!(text.matches("TOML").count() == 1 && text.contains("did you mean"), "{text}");
     }
 
     #[test]
@@ -332,6 +346,7 @@ mod tests {
             name: String,
             friction: Vec<Friction>,
             mass_g: f64,
+            height_mm: f64,
         }
         let text =
             "nam = \"a\"\nother = 1\n[[friction]]\nplug_socket = 1\n[[friction]]\nplug_sockt = 1";
@@ -339,12 +354,13 @@ mod tests {
         assert_eq!(error.place().line, Some(6));
         let text = error.to_string();
         let found: Vec<_> = text.lines().filter(|line| line.contains('`')).collect();
-        let expected = ["`plug_sockt`", "`nam`", "`other`", "`mass_g`"];
+        let expected = ["`plug_sockt`", "`nam`", "`other`", "`height_mm`"];
         let begin = |(line, key): (&&str, &str)| {
             line.split(" field ").nth(1).is_some_and(|of| of.starts_with(key))
         };
         assert!(found.len() == 4 && found.iter().zip(expected).all(begin), "{text}");
         assert!(text.contains("line 1,") && text.contains("did you mean `name`?"), "{text}");
+        assert!(text.contains("did you mean `mass_g`?"), "{text}");
         let document = Document::parse("kind = 1\nknd = 2\nplug_socket = 1", "t.toml").unwrap();
         let error = document.without(&["kind"]).read::<Friction>().unwrap_err().to_string();
         assert!(error.ends_with("did you mean `kind`?"), "{error}");

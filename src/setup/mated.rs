@@ -125,7 +125,7 @@ pub fn mated(
     let (along, jaws) = (along_of(&-out), jaws_of(&made.jaws));
     let like = like.map(|like| Family::Like(Box::new(like.clone())));
     let like = like.and_then(|family| Some((family.strategy_for(&made.task)?, family.name())));
-    let mut strategy = "upright sweep".to_owned();
+    let mut strategy = "untilted sweep along y".to_owned();
     if let Some(like) = like {
         (made.task.strategy, strategy) = like;
     }

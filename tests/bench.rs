@@ -9,12 +9,14 @@ fn measurements_are_added_checked_and_refused() {
     let add = |more: &str| {
         optimize_line(&format!("measure add {file} --task ket8 --density 20 --direction {more}"))
     };
+    optimize_line("measure add --out bench.csv").fails(2, &["'--out", "optimize measure add FILE"]);
     add("0 --range-mm 5.7").succeeds();
     add("10 --negative-mm -1.5 --failure-negative 3").succeeds();
     let before = folder.read("bench.csv");
     // What was typed is named, not the line that it would make.
     add("0 --range-mm 5.8").fails(2, &["error: --task: same finger as in line 2"]);
-    add("0.35 --range-mm 5.8").fails(2, &["error: --direction: 0.35 looks", "degrees, as in 20"]);
+    add("0.35 --range-mm 5.8")
+        .fails(2, &["error: --direction: 0.35 degrees", "0.35 rad is 20.1 degrees"]);
     let two = ["error: --set task.strategy.tilt_deg: `y` is not a number\n--range-mm: `x` is not"];
     add("5 --set task.strategy.tilt_deg=y --range-mm x").fails(2, &two);
     assert_eq!(folder.read("bench.csv"), before);
@@ -242,7 +244,7 @@ fn a_finger_of_a_task_of_ones_own_is_measured_without_naming_it_twice() {
     let folder = Studies::new();
     let few = "--engine fake --simulations 24 --samples 20 --measurements";
     let line = |line: &str| run(command(&[]).args(line.split_whitespace()).current_dir(&folder.0));
-    // A file that is not there is empty for `next` alone.
+    // For `next` alone, a missing file is empty: the default file and that of the project.
     let next = line(&format!("next --task ket8 {few} bench.csv"));
     let words = "ket8: nothing measured yet (bench.csv does not exist); by simulation alone\n";
     assert!(next.succeeds().starts_with(words), "{}", next.stdout);
@@ -252,6 +254,12 @@ fn a_finger_of_a_task_of_ones_own_is_measured_without_naming_it_twice() {
         .fails(2, &["bench.csv: has no measurements yet", "give --task"]);
     line(&format!("calibrate --task ket8 {few} bench.csv")).fails(2, &["bench.csv: cannot read"]);
     line(&format!("next --task ket8 {few} bensh")).fails(2, &["unknown measurement file `bensh`"]);
+    let cannot_read = ["bensh.csv: cannot read the measurement file"];
+    line(&format!("next --task ket8 {few} bensh.csv")).fails(2, &cannot_read);
+    folder.file("finger-opt.toml", "measurements = \"mine.csv\"\n");
+    let words = "nothing measured yet (mine.csv does not exist)";
+    line("next --task ket8 --engine fake --simulations 24 --samples 20").says(&[words]);
+    folder.file("finger-opt.toml", "");
     assert!(!folder.dir("bench.csv").exists());
     // The task is that of the lines, and its file that of the comment line.
     let own = include_str!("../tasks/ket8.toml").replace("\"ket8\"", "\"mine\"");

@@ -418,6 +418,8 @@ fn a_number_of_task_or_finger_can_be_set() {
     fake(&format!("{EVALUATE} --set task.grip.tcp_z_mm=0.0406")).fails(2, &metres);
     let radians = ["--direction: 0.35 degrees", "0.35 rad is 20.1 degrees"];
     fake("evaluate --task usb --density 20 --direction 0.35").fails(2, &radians);
+    let fraction = ["between 10 and 30 % in the space", "in fractions, multiply by 100: 20.00 %"];
+    fake("evaluate --task usb --density 0.2 --direction 10").fails(2, &fraction);
 }
 
 #[test]

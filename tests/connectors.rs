@@ -442,6 +442,7 @@ fn a_contact_spring_is_drawn_and_touches_nothing() {
     assert_clearance(&found, [0.2, 0.2]);
     let left_out = found["left_out"].as_array().unwrap();
     assert_eq!((left_out.len(), &left_out[0]["body"]), (1, &"socket".into()), "{found}");
+    assert!(found["found"].to_string().contains("[mating_force]"), "{found}");
     assert_eq!(found["check"]["nominal"]["outcome"], "inserted", "{found}");
     let task = folder.word("sprung.toml");
     let page = folder.word("sprung.html");

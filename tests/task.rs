@@ -196,7 +196,7 @@ fn a_wrong_unit_of_one_number_is_the_only_problem() {
             "speed_mm_per_s = 20.0",
             "speed_mm_per_s = 3000.0",
             "\"touch\" speed_mm_per_s",
-            "3000 mm/s is more than the plausible 2000 mm/s",
+            "3000 mm/s is outside the plausible 0.2 to 2000 mm/s",
             "between 0.2 and 2000 mm/s",
         ),
         ("tilt_deg = 4.0", "tilt_deg = 0.05", "success.tilt_deg", "0.05 degrees", "2.9 degrees"),

@@ -171,7 +171,7 @@ def test_a_start_that_does_not_insert_is_to_be_taught_anew(out):
 def test_what_could_not_be_written_is_refused_before_the_robot_moves(out, tmp_path):
     robot = Steps()
     for wrong, said in [
-        ({"density": 0.2}, "looks like a share"),
+        ({"density": 0.2}, "in fractions, multiply by 100: 20.00 %"),
         ({"direction": 95}, "0 .. 90"),
         ({"step_mm": float("nan")}, "lengths in mm"),
         ({"resolution_mm": 0.6}, "each at most the next"),

@@ -22,7 +22,7 @@ use serde_json::json;
 fn stiffness(text: &str) -> Result<f64, String> {
     let n_per_mm = text.parse().unwrap_or(f64::NAN);
     let problem = numbers::problem("stiffness_compliance_n_per_mm", n_per_mm);
-    problem.map_or(Ok(n_per_mm), |problem| Err(problem + " N/mm"))
+    problem.map_or(Ok(n_per_mm), Err)
 }
 
 /// Parses a setting, `KEY=VALUE`.
@@ -60,10 +60,17 @@ impl InfillRequest {
             return Err(Failure::usage("give --density and --direction"));
         };
         match numbers::problem(DENSITY_KEY, density) {
-            Some(problem) => Err(Failure::usage(format!("--density: {problem} (percent)"))),
+            Some(problem) => Err(Failure::usage(format!("--density: {problem}"))),
             None => Ok([density, direction]),
         }
     }
+}
+
+/// Checks that a direction of a range, degrees, is not in radians, as [`wrong_unit::angle`] does.
+pub(crate) fn in_degrees(direction: f64, range: [f64; 2], step: f64) -> Result<(), Failure> {
+    wrong_unit::angle(direction, range, step).map_or(Ok(()), |radians| {
+        Err(Failure::usage(format!("--direction: {}", radians.join(" "))))
+    })
 }
 
 /// Finger, by its infill or by its stiffness.
@@ -111,11 +118,8 @@ impl FingerRequest {
     pub(crate) fn choose(&self, setup: &Setup) -> Result<ChosenFinger, Failure> {
         let chosen = self.choose_with(setup, &setup.evaluator)?;
         let of_space = setup.space.parameters.iter().find(|one| one.key == DIRECTION_KEY);
-        let direction = self.infill.direction.zip(of_space);
-        let radians = direction
-            .and_then(|(value, one)| wrong_unit::angle(value, [one.low, one.high], one.step));
-        if let Some(radians) = radians {
-            return Err(Failure::usage(format!("--direction: {}", radians.join(" "))));
+        if let Some((value, one)) = self.infill.direction.zip(of_space) {
+            in_degrees(value, [one.low, one.high], one.step)?;
         }
         if !chosen.set.0.is_empty() {
             check_units(&setup.only_task()?.task, &chosen.scenario.task)?;
@@ -210,13 +214,16 @@ fn check(setup: &Setup, flag: &str, key: &str, value: f64) -> Result<(), Failure
     match parameters.iter().find(|parameter| parameter.key == key) {
         // NaN is outside.
         Some(parameter) if (parameter.low..=parameter.high).contains(&value) => Ok(()),
-        Some(parameter) => Err(Failure::usage(format!(
-            "{flag} {}: {key} must lie between {} and {} in the space `{}`",
-            shown(value),
-            parameter.low,
-            parameter.high,
-            setup.space.name
-        ))),
+        Some(parameter) => {
+            let (unit, bounds) = (parameter.key.unit(), [parameter.low, parameter.high]);
+            let other = wrong_unit::other(unit, value, bounds);
+            let other = other.map_or(String::new(), |other| format!("; {other}"));
+            let ([low, high], space) = (bounds, &setup.space.name);
+            Err(Failure::usage(format!(
+                "{flag} {}: {key} must lie between {low} and {high}{unit} in the space `{space}`{other}",
+                shown(value),
+            )))
+        }
         None => {
             Err(Failure::usage(format!("{flag}: the space `{}` has no {key}", setup.space.name)))
         }

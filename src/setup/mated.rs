@@ -13,7 +13,7 @@ use connector::mesh::{self, Files, SIZES, Surface, Triangle, reduced};
 use connector::plan::Family;
 use connector::write::origin;
 use input::counted;
-use input::units::MM;
+use input::units::{MM, mm};
 use insertion::task::Task;
 use nalgebra::{Point3, Vector3};
 use serde_json::{Value, json};
@@ -125,7 +125,7 @@ pub fn mated(
     let (along, jaws) = (insert_along(&mate), jaws_of(&made.jaws));
     let like = like.map(|like| Family::Like(Box::new(like.clone())));
     let like = like.and_then(|family| Some((family.strategy_for(&made.task)?, family.name())));
-    let mut strategy = "upright sweep".to_owned();
+    let mut strategy = "untilted sweep along y".to_owned();
     if let Some(like) = like {
         (made.task.strategy, strategy) = like;
     }
@@ -261,6 +261,11 @@ fn described(
         let why = format!("{parts} parts in {} more places, less deep (--json)", more.len());
         findings.push(("overlap", why));
     }
+    if made.interference.iter().any(|of| !of.cut_back) {
+        let how = "parts left out exert no force; give the friction of contact springs in the task file, in a table \
+                   [mating_force] with, for example, depth_mm = [0, 2, 6] (of the tip) and force_n = [0, 12, 8]";
+        findings.push(("springs", how.to_owned()));
+    }
     findings
 }
 
@@ -289,7 +294,7 @@ pub fn unit(
                 let read = given.map_or("mm, m or in".to_owned(), value);
                 let [least, most] = SIZES.map(|side| side / MM);
                 let is = format!("the {} is {:.4} {read} long", BODIES[at], longest[at]);
-                (at, format!("{is}; connectors are {least:.0} to {most:.0} mm long"))
+                (at, format!("{is}; connectors are {least:.0} to {most:.0} mm long (--unit)"))
             }
         };
         return Err(Failure::in_file(files[at], problem));

@@ -5,6 +5,7 @@ use super::files::find;
 use super::request::TaskSource;
 use super::task::read_task;
 use crate::failure::Failure;
+use crate::project::Project;
 use calibration::experiments::{self, Experiment};
 use calibration::subject::completed;
 use input::shipped::{COMMERCIAL, MEASUREMENTS, Source, TASKS};
@@ -46,11 +47,11 @@ pub fn file(name: &str) -> Result<Source, Failure> {
     find("measurement file", MEASUREMENTS, name)
 }
 
-/// Returns whether this is the path of a file that does not exist yet.
+/// Returns whether this is the default measurement file, or the path of the project's, and does not exist yet.
 pub fn is_missing(name: &str) -> bool {
-    let path = Path::new(name);
-    (name.contains(['/', '\\']) || path.extension().is_some())
-        && path.try_exists().is_ok_and(|there| !there)
+    let project = || Project::current().ok().flatten()?.settings.measurements;
+    let default = name == BENCH_FILE || project().as_deref() == Some(name) && name.contains('.');
+    default && Path::new(name).try_exists().is_ok_and(|there| !there)
 }
 
 /// Returns the path of the user's task file from its comment line; `None` without one.

@@ -83,7 +83,7 @@ pub(crate) fn separated_by_x<T: FromStr, const N: usize>(text: &str) -> Option<[
 fn lengths<const N: usize>(text: &str, usage: &str) -> Result<[f64; N], String> {
     let numbers: [f64; N] = separated_by_x(text).ok_or(usage)?;
     match numbers.iter().find_map(|mm| numbers::problem("connector.size_mm", *mm)) {
-        Some(problem) => Err(format!("a dimension {problem} mm; {usage}")),
+        Some(problem) => Err(format!("a dimension {problem}; {usage}")),
         None => Ok(numbers.map(|mm| mm * MM)),
     }
 }

@@ -40,7 +40,7 @@ impl Pins {
     /// If the text is not a number from 0.1 to 50 mm.
     pub fn length_mm(text: &str) -> Result<f64, String> {
         let mm = text.parse::<f64>().map_err(|_| "give a number of mm, as in 0.64".to_owned())?;
-        numbers::problem("connector.pin_mm", mm).map_or(Ok(mm), |problem| Err(problem + " mm"))
+        numbers::problem("connector.pin_mm", mm).map_or(Ok(mm), Err)
     }
 
     /// Returns the size of the bounding box of all pins.

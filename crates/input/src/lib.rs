@@ -50,6 +50,11 @@ fn nearest_key<'a>(message: &'a str, more: &[&'a str]) -> Option<&'a str> {
     shipped::nearest(given, &accepted.collect::<Vec<_>>())
 }
 
+/// Returns the key that is missing according to an error of the parser.
+fn missing_key(error: &InputError) -> Option<&str> {
+    error.problem.rsplit_once("missing field `")?.1.strip_suffix('`')
+}
+
 /// Parsed TOML text from which typed values are read.
 #[derive(Debug, Clone)]
 pub struct Document<'a> {
@@ -120,14 +125,20 @@ impl<'a> Document<'a> {
         read.map_err(|mut error| {
             error.set_input(Some(self.text));
             let near = nearest_key(error.message(), self.taken);
+            let unknown = most > 1 && error.message().starts_with("unknown field `");
+            // Reads on as if the key had another name or were absent.
+            let rest = |name: Option<&str>, most: usize| {
+                let (at, mut rest) = (error.span().filter(|_| unknown)?, self.clone());
+                let replaced = replace_key(rest.tree.get_mut(), &at, name);
+                replaced.then(|| rest.deserialize::<T>(most).err())?
+            };
+            // If no key is similar, it may be the one that is missing.
+            let without = if near.is_none() { rest(None, 1) } else { None };
+            let missing = without.as_ref().and_then(missing_key);
+            let missing = missing.filter(|key| error.message().contains(&format!("`{key}`")));
+            let near = near.or(missing);
             let mut found = fault(self.file, self.text, &error, near);
-            // Reads on as if the key were the nearest one or, without one, absent.
-            let (mut rest, near) = (self.clone(), near.filter(|near| !self.taken.contains(near)));
-            if most > 1
-                && error.message().starts_with("unknown field `")
-                && error.span().is_some_and(|at| replace_key(rest.tree.get_mut(), &at, near))
-                && let Err(rest) = rest.deserialize::<T>(most - 1)
-            {
+            if let Some(rest) = rest(near.filter(|near| !self.taken.contains(near)), most - 1) {
                 found.problem += &format!("\n{}", rest.problem);
             }
             found
@@ -339,8 +350,12 @@ mod tests {
         assert_eq!(error.place().line, Some(2));
         let text = error.to_string();
         assert!(text.ends_with("expected `plug_socket`; did you mean `plug_socket`?"), "{text}");
-        let error = read::<Friction>("other = 0.3", "task.toml").unwrap_err().to_string();
-        assert!(!error.contains("mean"), "{error}");
+        let error = |text: &str| read::<Friction>(text, "task.toml").unwrap_err().to_string();
+        let text = error("plug_socket = 0.3\nother = 0.3");
+        assert!(!text.contains("mean"), "{text}");
+        // The only missing key, though it is not similar.
+        let text = error("other = 0.3");
+        assert!(text.matches("TOML").count() == 1 && text.contains("did you mean"), "{text}");
     }
 
     #[test]
@@ -352,6 +367,7 @@ mod tests {
             name: String,
             friction: Vec<Friction>,
             mass_g: f64,
+            height_mm: f64,
         }
         let text =
             "nam = \"a\"\nother = 1\n[[friction]]\nplug_socket = 1\n[[friction]]\nplug_sockt = 1";
@@ -359,12 +375,13 @@ mod tests {
         assert_eq!(error.place().line, Some(6));
         let text = error.to_string();
         let found: Vec<_> = text.lines().filter(|line| line.contains('`')).collect();
-        let expected = ["`plug_sockt`", "`nam`", "`other`", "`mass_g`"];
+        let expected = ["`plug_sockt`", "`nam`", "`other`", "`height_mm`"];
         let begin = |(line, key): (&&str, &str)| {
             line.split(" field ").nth(1).is_some_and(|of| of.starts_with(key))
         };
         assert!(found.len() == 4 && found.iter().zip(expected).all(begin), "{text}");
         assert!(text.contains("line 1,") && text.contains("did you mean `name`?"), "{text}");
+        assert!(text.contains("did you mean `mass_g`?"), "{text}");
         let line = "friction = [{ plug_sockt = 1, plug_scket = 2 }]";
         let text = format!("mass_g = 1\nname = 3\n{line}");
         let text = read::<Pair>(&text, "t.toml").unwrap_err().to_string();

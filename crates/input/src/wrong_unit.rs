@@ -2,7 +2,7 @@
 
 use crate::units::{DEG, without_unit};
 
-/// Problem and remedy of a number that is probably in a wrong unit: the bound that it violates, and the accepted values.
+/// Problem and remedy of a number that is probably in a wrong unit: its bounds, and the accepted values.
 pub type WrongUnit = [String; 2];
 
 /// Returns the units mistaken for this one, and their size in it.
@@ -11,7 +11,11 @@ fn mistaken(unit: &str) -> &'static [(&'static str, f64)] {
         " N" => &[("kN", 1000.0), ("grams-force", 9.81e-3)],
         " kg" => &[("g", 0.001)],
         " mm/s" => &[("m/s", 1000.0)],
-        _ => &[("metres", 1000.0), ("inches", 25.4), ("micrometres", 0.001), ("centimetres", 10.0)],
+        " %" => &[("fractions", 100.0)],
+        " mm" => {
+            &[("metres", 1000.0), ("inches", 25.4), ("micrometres", 0.001), ("centimetres", 10.0)]
+        }
+        _ => &[],
     }
 }
 
@@ -21,22 +25,24 @@ pub fn number(key: &str, value: f64, [low, high]: [f64; 2]) -> Option<WrongUnit>
         return None;
     }
     let unit = Some(without_unit(key).1).filter(|unit| !unit.is_empty()).unwrap_or(" mm");
-    let (size, limit) = if value < low { ("less", low) } else { ("more", high) };
     let shown = (value * 1e4).round() / 1e4;
-    let problem = format!("{shown}{unit} is {size} than the plausible {limit}{unit}");
+    let problem = format!("{shown}{unit} is outside the plausible {low} to {high}{unit}");
     Some([problem, remedy(unit, value, [low, high])])
 }
 
 /// Returns advice on a number outside its range: the unit in which it is inside, or the range.
 pub fn remedy(unit: &str, value: f64, [low, high]: [f64; 2]) -> String {
+    other(unit, value, [low, high]).unwrap_or_else(|| format!("between {low} and {high}{unit}"))
+}
+
+/// Returns the unit in which a number outside its range is inside, if there is one.
+pub fn other(unit: &str, value: f64, [low, high]: [f64; 2]) -> Option<String> {
     let within = |(_, factor): &&(&str, f64)| (low..=high).contains(&(value * factor));
-    match mistaken(unit).iter().find(within) {
-        Some((other, factor)) => format!(
-            "the unit is{unit}; if the number was in {other}, multiply by {factor}: {:.2}{unit}",
-            value * factor
-        ),
-        None => format!("between {low} and {high}{unit}"),
-    }
+    let (other, factor) = mistaken(unit).iter().find(within)?;
+    Some(format!(
+        "the unit is{unit}; if the number was in {other}, multiply by {factor}: {:.2}{unit}",
+        value * factor
+    ))
 }
 
 /// Checks that an angle, degrees, is not in radians: that it is a multiple of `step`, or that its magnitude would in

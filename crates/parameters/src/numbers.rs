@@ -4,7 +4,8 @@
 //! In a pattern `*` matches a name, an axis or a list index (of a phase, a part, an end of a span), and `a|b` matches
 //! the word `a` or `b`.
 
-use input::{Check, InputError, shown};
+use crate::path::label;
+use input::{Check, InputError, shown, wrong_unit};
 use toml::Value;
 
 /// Infill density.
@@ -235,7 +236,7 @@ pub fn paths(kind: Kind) -> Vec<String> {
 /// path is not in the table.
 pub fn problem(path: &str, value: f64) -> Option<String> {
     let number = NUMBERS.iter().find(|number| matches(number.pattern, path))?;
-    out_of_bounds(value, number.bounds)
+    out_of_bounds(path, value, number.bounds)
 }
 
 /// Returns whether a path matches a pattern; a name in place of `*` may contain dots. Does not expand patterns, since
@@ -334,19 +335,23 @@ fn check_value(
         Value::Integer(whole) => check_value(check, key, &Value::Float(*whole as f64), rows),
         Value::Float(number) => {
             let row = rows.iter().find(|(_, rest)| rest.is_empty());
-            let problem = row.and_then(|(row, _)| out_of_bounds(*number, row.bounds));
+            let problem = row.and_then(|(row, _)| out_of_bounds(key, *number, row.bounds));
             problem.map_or(Ok(()), |problem| check.fail(key, problem))
         }
         _ => Ok(()),
     }
 }
 
-fn out_of_bounds(value: f64, [low, high]: [f64; 2]) -> Option<String> {
+/// Returns the error message for a number out of bounds, in the unit of its key.
+pub(crate) fn out_of_bounds(key: &str, value: f64, [low, high]: [f64; 2]) -> Option<String> {
     // A NaN is outside.
     let outside = !(low..=high).contains(&value);
     outside.then(|| {
+        let unit = label(key).1;
+        let other = wrong_unit::other(unit, value, [low, high]);
+        let other = other.map_or(String::new(), |other| format!("; {other}"));
         let [value, low, high] = [value, low, high].map(shown);
-        format!("is {value}; it must lie in {low} .. {high}")
+        format!("is {value}; it must lie in {low} .. {high}{unit}{other}")
     })
 }
 

@@ -1,10 +1,10 @@
 //! Search spaces of discrete design variables, and the designs in them.
 
-use crate::numbers::Kind;
 pub use crate::numbers::{DENSITY as DENSITY_KEY, DIRECTION as DIRECTION_KEY};
+use crate::numbers::{Kind, out_of_bounds};
 use crate::{Parameter, Path, Scale};
 use ask_tell::GridPoint;
-use input::{Check, InputError, read, shown};
+use input::{Check, InputError, read};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -34,12 +34,13 @@ pub struct Variable {
 impl Variable {
     fn problem(&self) -> Option<String> {
         let Variable { low, high, step, .. } = *self;
-        let [least, most] = self.key.bounds();
         let (linear, steps) = (is_linear(&self.scale), self.steps());
         let wide = linear && high > low && step > (high - low) * (1.0 + 1e-9);
         let uneven = (steps - steps.round()).abs() > 1e-6 || steps > 1e6;
         let finite = [low, high, step].iter().all(|v| v.is_finite());
-        let within = format!("must lie in {} .. {}", shown(least), shown(most));
+        let outside = [low, high]
+            .into_iter()
+            .find_map(|bound| out_of_bounds(&self.key, bound, self.key.bounds()));
         let log = "on a log scale step must be above 1 and low above 0";
         let settable = matches!(self.key.kind(), Kind::Infill | Kind::File | Kind::Finger);
         let unset =
@@ -50,7 +51,7 @@ impl Variable {
             (low > high, "low must not be above high"),
             (linear && step <= 0.0, "step must be above 0"),
             (!linear && (step <= 1.0 || low <= 0.0), log),
-            (low < least || high > most, &within),
+            (outside.is_some(), outside.as_deref().unwrap_or_default()),
             (step < FINEST_STEP, "step must be 1e-6 or more"),
             (wide, "step must not be larger than high - low"),
             (uneven, "high - low must be a whole number of steps, at most 1e6"),

@@ -22,7 +22,7 @@ pub(super) fn screen(answer: &Answer, files: &PageFiles) -> Markup {
     let uncertainty = files.analyses.levers.as_ref().and_then(Levers::uncertainty);
     html! {
         header {
-            p.muted { (lines::searched(answer)) " · " (answer.record.config.robot) }
+            p.muted { (lines::searched(answer)) }
             @if let Some((_, text)) = lines::force(answer) { p.warn { "Force: " (text) "." } }
             h1 { (answer.headline()) }
             p.lead {

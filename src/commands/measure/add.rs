@@ -6,6 +6,7 @@ use crate::{Context, Failure, Output, TaskFile, command, read_task};
 use calibration::experiments::{
     COLUMNS, Experiment, NOT_MEASURABLE, Problems, appended, own_task, own_tasks, parse,
 };
+use clap::builder::UnknownArgumentValueParser;
 use input::InputError;
 use input::files::{LARGEST_INPUT, LockedFile};
 use input::shipped::{COMMERCIAL, MEASUREMENTS, TASKS};
@@ -66,6 +67,10 @@ pub struct Request {
     /// Another design parameter, for example of spaces/codesign.toml; may be given several times
     #[arg(long, value_name = "KEY=VALUE", value_parser = setting)]
     pub set: Vec<(String, String)>,
+    /// Refused with a tip: other commands name the file that they write by this option
+    #[arg(long, hide = true, value_name = "FILE", value_parser = UnknownArgumentValueParser::suggest(
+        "the measurement file has no option: optimize measure add FILE"))]
+    pub out: Option<String>,
     /// Check the line without writing it
     #[arg(long, hide = true)]
     pub dry_run: bool,

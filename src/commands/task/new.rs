@@ -205,5 +205,5 @@ fn copy(name: &str, TaskFile { source, task }: &TaskFile) -> String {
 /// Parses a length, mm, within the bounds of the number `key`; `example` is for the error.
 fn parse_mm(text: &str, key: &str, example: f64) -> Result<f64, String> {
     let mm = text.parse::<f64>().map_err(|_| format!("give a number of mm, as in {example}"))?;
-    numbers::problem(key, mm).map_or(Ok(mm), |problem| Err(problem + " mm"))
+    numbers::problem(key, mm).map_or(Ok(mm), Err)
 }

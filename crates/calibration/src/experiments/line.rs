@@ -2,11 +2,12 @@
 
 use super::{Experiment, NOT_MEASURABLE};
 use csv::StringRecord;
-use input::{InputError, Place, shown};
+use input::{InputError, Place, shown, wrong_unit};
 use insertion::{DENSITY_KEY, DIRECTION_KEY, Design, FailureClass};
 use jiff::Timestamp;
 use jiff::civil::Date;
 use jiff::tz::TimeZone;
+use parameters::numbers;
 use std::time::{Duration, SystemTime};
 
 /// Largest difference between a range and its window, mm: both are rounded to 0.1.
@@ -165,25 +166,16 @@ fn number(text: &str) -> Result<f64, String> {
 
 /// Parses an infill density, percent.
 fn density(text: &str) -> Result<f64, String> {
-    match number(text)? {
-        share if share > 0.0 && share < 1.0 => {
-            Err(format!("{share} looks like a share; give percent, as in {}", shown(100.0 * share)))
-        }
-        percent if percent > 0.0 && percent <= 100.0 => Ok(percent),
-        other => Err(format!("is {other}; it must be above 0 and at most 100 percent")),
-    }
+    let percent = number(text)?;
+    numbers::problem(DENSITY_KEY, percent).map_or(Ok(percent), Err)
 }
 
 /// Parses an infill direction, degrees.
 fn direction(text: &str) -> Result<f64, String> {
-    match number(text)? {
-        radians if radians.fract() != 0.0 && radians.abs() < 1.6 => Err(format!(
-            "{radians} looks like radians; give degrees, as in {:.0}",
-            radians.to_degrees()
-        )),
-        degrees if (0.0..=90.0).contains(&degrees) => Ok(degrees),
-        other => Err(format!("is {other}; it must lie in 0 .. 90 degrees")),
-    }
+    let degrees = number(text)?;
+    let radians = wrong_unit::angle(degrees, [0.0, 90.0], 1.0).map(|radians| radians.join(" "));
+    let problem = radians.or_else(|| numbers::problem(DIRECTION_KEY, degrees));
+    problem.map_or(Ok(degrees), Err)
 }
 
 /// Parses a length, mm.

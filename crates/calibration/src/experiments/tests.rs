@@ -38,8 +38,8 @@ fn partial_data_are_data() {
 #[test]
 fn what_looks_wrong_is_told_with_line_and_column() {
     for (line, column, words) in [
-        ("ket8,0.07,0,,,7,,,,", DENSITY_KEY, "looks like a share; give percent, as in 7"),
-        ("ket8,20,0.52,,,7,,,,", DIRECTION_KEY, "looks like radians; give degrees, as in 30"),
+        ("ket8,0.07,0,,,7,,,,", DENSITY_KEY, "in fractions, multiply by 100: 7.00 %"),
+        ("ket8,20,0.52,,,7,,,,", DIRECTION_KEY, "0.52 rad is 29.8 degrees"),
         ("ket8,20,0,,,0.0041,,,,", "range_mm", "looks like metres; give millimetres, as in 4.1"),
         ("ket8,20,0,,,7600,,,,", "range_mm", "micrometres; give millimetres, as in 7.6"),
         ("ket8,20,0,0.5,2.5,,,,,", "negative_mm", "excludes 0"),
@@ -102,7 +102,7 @@ fn unknown_tasks_and_columns_are_told_with_the_nearest() {
     // Together with other problems of the same line.
     let text = format!("{HEADER}\nket08,0.2,0,,,7,,,,\n");
     let error = parse_known(&text, "m.csv", &["ket8", "usb"]).unwrap_err().to_string();
-    for part in ["line 2: task: unknown task `ket08`", "did you mean `ket8`", "a share"] {
+    for part in ["line 2: task: unknown task `ket08`", "did you mean `ket8`", "in fractions"] {
         assert!(error.contains(part), "{error}");
     }
     for (header, words) in [

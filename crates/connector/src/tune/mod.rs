@@ -107,7 +107,7 @@ pub struct Effort<'a> {
 pub fn tune(tuner: &Tuner, effort: &Effort) -> Result<Tuned, DesignError> {
     let mut tuned = Tuned { steps: Vec::new(), best: 0, robustness: Vec::new(), windows: 0 };
     let given = tuner.given(&tuner.task.strategy)?;
-    tuned.add(Stage::AsItIs, vec![("strategy as given".to_owned(), given)], effort);
+    tuned.add(Stage::AsItIs, vec![("initial strategy".to_owned(), given)], effort);
     for stage in [Stage::Start, Stage::Families, Stage::Search] {
         let can_end = stage > Stage::Start && effort.until_enough;
         let best = &tuned.best().tried;

@@ -169,10 +169,11 @@ fn acceptable(answer: &Answer) -> f64 {
     each.fold(f64::INFINITY, f64::min).floor()
 }
 
-/// Returns tasks, optimizer, number of evaluations, and the mating forces of the connectors.
+/// Returns tasks, optimizer, robot, number of evaluations, and the mating forces of the connectors.
 pub fn searched(answer: &Answer) -> String {
     let record = answer.record;
-    let (task, method) = (record.config.task_name(), record.config.method());
+    let config = &record.config;
+    let (task, method, robot) = (config.task_name(), config.method(), &config.robot);
     let evaluated = match record.settled {
         true => format!("settled {}", words::settled(record)),
         false => format!("{} evaluations", record.evaluations.len()),
@@ -180,7 +181,7 @@ pub fn searched(answer: &Answer) -> String {
     let mut forces: Vec<_> =
         record.limits.mating.iter().copied().map(words::mating_force).collect();
     forces.dedup();
-    format!("{task} with {method}: {evaluated}; mating force {}", forces.join(", "))
+    format!("{task} with {method}, robot {robot}: {evaluated}; mating force {}", forces.join(", "))
 }
 
 /// Returns the number of designs that tie with the recommended one, their parameters, and the losses of others among

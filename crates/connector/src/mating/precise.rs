@@ -139,7 +139,7 @@ impl PlayMeasurement<'_> {
         }
         let Some([low, high]) = found else { return 0.0 };
         self.shift[axis] += f64::from(low + high) / 2.0 * CELL;
-        f64::from(high - low + 1) * CELL
+        f64::from(high - low) * CELL
     }
 
     /// Returns the height at which the plug rests, m.

@@ -592,7 +592,8 @@ def next_print(
     It is the finger whose measurement is expected to improve the final choice most, by simulation and
     measurements: because it may be the best, or because it decides between others. In a space that varies
     the task as well (codesign) it is a finger with a strategy; another strategy for a printed finger needs
-    no new print. The file of measurements may be empty or missing.
+    no new print. The file of measurements may be empty; bench.csv and that of finger-opt.toml may be
+    missing.
 
     Args:
         measurements: Bench measurements: published, or the path of a file.

@@ -221,7 +221,7 @@ mod tests {
         let heavy = servo.text.replace(line("mass_kg"), "mass_kg = 900");
         refused(
             Robot::parse(&heavy, "r.toml"),
-            &["mass_kg: 900 kg is more", "in g, multiply by 0.001: 0.90 kg"],
+            &["mass_kg: 900 kg is outside", "in g, multiply by 0.001: 0.90 kg"],
         );
         let arm = robot_file("ur5e");
         let short = arm.text.replace(".0, ", "e-3, ").replace(".0]", "e-3]");

@@ -129,7 +129,7 @@ fn the_page_is_whole_and_its_numbers_are_the_records() {
     let best = study.best().unwrap();
     let window = &best.tasks[0].window;
     for number in [
-        format!("<h1>Print the finger with {}</h1>", words::design(&best.design)),
+        format!("not supported by measurements: {}</h1>", words::design(&best.design)),
         format!("simulated: {} mm, not confirmed", words::span(words::ends_mm(window))),
         format!("compliance {:.2} ± ", best.stiffness.compliance.mean / N_PER_MM),
         words::mm(window.range_mm()),

@@ -120,8 +120,8 @@ fn each_fault_is_caught_with_its_key_and_what_would_be_right() {
         (push, "[0.0, 0.0, -10.0]", "\"assembly\" move_mm", "success requires 12", "z = -16"),
         (push, "[0.0, 0.0, 20.0]", "\"assembly\" move_mm", "goes up", "negative"),
         (touch, "[0.0, 0.0, 3.0]", "\"touch\" move_mm", "goes up", "negative"),
-        (start, "[0.0, -0.0012, 0.051]", "strategy.start_mm", "less than", "metres"),
-        (grip, "1.6\nshoulder_z_mm = 1.7", "grip.tcp_z_mm", "less than", "inches"),
+        (start, "[0.0, -0.0012, 0.051]", "strategy.start_mm", "is outside", "metres"),
+        (grip, "1.6\nshoulder_z_mm = 1.7", "grip.tcp_z_mm", "is outside", "inches"),
         (faces, "[-6.6, 6.6]", "grip.faces_y_mm", "outside `grip block`", "[-6.2, 6.2]"),
         (faces, "[-5.0, 5.0]", "grip.faces_y_mm", "inside `grip block`", "[-6.2, 6.2]"),
         (neck, "[37.2, 39.96]", "\"neck\" z_mm", "gap of 1 mm to `taper`", "36.2"),
@@ -133,7 +133,7 @@ fn each_fault_is_caught_with_its_key_and_what_would_be_right() {
         (start, "[0.0, 22.2, 51.0]", "strategy.start_mm", "in y", "y = -1.13"),
         (start, "[22.0, -1.2, 51.0]", "strategy.start_mm", "from 19.4 to 24.4 mm in x", "x = 0.1"),
         (neck, "[33.2, 39.96]", "part \"taper\"", "3 mm deep in `neck`", "end where they meet"),
-        (neck, "[36.2, 36.2015]", "\"neck\" z_mm", "0.0015 mm is less", "1.50 mm"),
+        (neck, "[36.2, 36.2015]", "\"neck\" z_mm", "0.0015 mm is outside", "1.50 mm"),
         ("mass_g = 5.0", "0.005", "plug.mass_g", "less than foam", "plastic"),
         (slip, "5.0", "grip.slip_limit_mm", "3.35 mm", "at most 3.0"),
     ] {
@@ -191,7 +191,7 @@ fn a_wrong_unit_of_one_number_is_the_only_problem() {
         ),
         ("tilt_deg = 10.0", "tilt_deg = 0.17", "strategy.tilt_deg", "radians?", "9.7 degrees"),
         ("tilt_deg = 10.0", "tilt_deg = -0.17", "strategy.tilt_deg", "radians?", "-9.7 degrees"),
-        ("force_n = 5.0", "force_n = 500.0", "grip.force_n", "500 N is more", "grams-force"),
+        ("force_n = 5.0", "force_n = 500.0", "grip.force_n", "500 N is outside", "grams-force"),
         (
             "speed_mm_per_s = 20.0",
             "speed_mm_per_s = 3000.0",
@@ -231,7 +231,7 @@ fn a_file_in_another_unit_is_asked_about() {
         scale(&mut file, factor, false);
         let task = Task::from_table(file.as_table().unwrap().clone(), "usb").unwrap();
         let found = problems(&task);
-        assert!(found.iter().all(|found| found.problem.contains("less than")), "{found:#?}");
+        assert!(found.iter().all(|found| found.problem.contains("is outside")), "{found:#?}");
         assert!(found.iter().any(|found| found.key == "plug.part" && found.remedy.contains(unit)));
     }
 }

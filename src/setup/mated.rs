@@ -13,7 +13,7 @@ use connector::mesh::{self, Files, SIZES, Surface, Triangle, reduced};
 use connector::plan::Family;
 use connector::write::origin;
 use input::counted;
-use input::units::{MM, mm};
+use input::units::MM;
 use insertion::task::Task;
 use nalgebra::{Point3, Vector3};
 use serde_json::{Value, json};

@@ -123,7 +123,7 @@ def test_wrong_files_are_refused(occ, parts, meshes, fake, tmp_path, wrong):
     else:
         content = {"half": file.read_bytes()[:9000], "empty": b"", "stl": meshes[0].read_bytes()}
         file.write_bytes(content[wrong])
-    with pytest.raises(fo.InputError, match="plug.step.*(whole STEP file|longer than 300 mm|along any|walls on four sides)"):
+    with pytest.raises(fo.InputError, match="plug.step.*(whole STEP file|3 to 300 mm long|along any|walls on four sides)"):
         imported(fake, tmp_path, file, meshes[1])
     assert not (tmp_path / "mine.toml").exists()
 

@@ -6,8 +6,7 @@ use crate::{
     ChosenFinger, Context, Failure, FingerRequest, Output, Setup, SetupRequest, command, layout,
 };
 use analysis::map::{Axes, CaptureMap, Plane};
-use insertion::value_name;
-use insertion::{Design, Grasp, OffsetStep, Scenario};
+use insertion::{Design, Grasp, OffsetStep, Scenario, value_name};
 use parameters::plan::grid::MAX_TRIALS;
 use serde::Serialize;
 use std::path::PathBuf;

@@ -1,9 +1,8 @@
 //! Bodies of plug and socket in the files that a user names.
 
 use super::mated::unit;
-use crate::context::Context;
-use crate::failure::Failure;
 use crate::python::Format;
+use crate::{Context, Failure};
 use connector::body::{extent, width};
 use connector::draft::Size;
 use connector::mating::plugs;

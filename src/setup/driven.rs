@@ -2,8 +2,7 @@
 
 use super::finger::FingerRequest;
 use super::request::SetupRequest;
-use crate::context::not_stopped;
-use crate::failure::Failure;
+use crate::{Failure, not_stopped};
 use input::units::MM;
 use insertion::evaluation::tolerance;
 use insertion::trial::{Driven, State};

@@ -3,12 +3,10 @@
 use crate::failure::Failure;
 use finray::printed::PrintedFinger;
 use input::shipped::{self, FINGERS, ROBOTS, STIFFNESS, Shipped, Source};
-use insertion::finger::file::FingerFile;
-use insertion::finger::model::{ComputedFingers, FingerSource};
-use insertion::robot::Robot;
-use insertion::stiffness;
+use insertion::finger::model::ComputedFingers;
 use insertion::stiffness::SurrogateError;
 use insertion::surrogate::{self, Model};
+use insertion::{FingerFile, FingerSource, Robot, stiffness};
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 

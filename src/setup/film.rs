@@ -1,9 +1,7 @@
 //! Recordings of trials: a page that plays them (film), a table and a plot.
 
-use crate::context::not_stopped;
-use crate::failure::Failure;
-use insertion::evaluation::evaluator::Scenario;
-use insertion::trial::{Grasp, Recording, Rig};
+use crate::{Failure, not_stopped};
+use insertion::{Grasp, Recording, Rig, Scenario};
 use report::replay::{self, Film};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;

@@ -1,18 +1,16 @@
 //! Finger of a trial or an evaluation.
 
 use super::Setup;
-use crate::failure::Failure;
-use crate::layout;
+use crate::{Failure, layout};
 use connector::check::{Problem, wrong_units};
 use input::shown;
 use input::units::{MM, N_PER_MM};
 use input::wrong_unit;
-use insertion::evaluation::cell::Priors;
-use insertion::evaluation::evaluator::{Evaluator, Scenario};
-use insertion::finger::model::{CentreSource, FingerModelKind, RCC_KEY};
-use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design};
-use insertion::surrogate::Prediction;
-use insertion::task::Task;
+use insertion::finger::model::{CentreSource, RCC_KEY};
+use insertion::{
+    DENSITY_KEY, DIRECTION_KEY, Design, Evaluator, FingerModelKind, Prediction, Priors, Scenario,
+    Task,
+};
 use parameters::numbers;
 use report::answer::lines;
 use serde::{Serialize, Serializer};

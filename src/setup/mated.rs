@@ -2,8 +2,7 @@
 
 use super::bodies::{PairRequest, Parts};
 use super::poses::{MatedPose, depth, insert_along, jaws_of, mate};
-use crate::context::Context;
-use crate::failure::Failure;
+use crate::{Context, Failure};
 use connector::body::{extent, longest_side, width};
 use connector::draft::Size;
 use connector::mating::Mate;

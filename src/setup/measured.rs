@@ -9,9 +9,7 @@ use crate::project::Project;
 use calibration::experiments::{self, Experiment};
 use calibration::subject::completed;
 use input::shipped::{COMMERCIAL, MEASUREMENTS, Source, TASKS};
-use insertion::evaluation::cell::Priors;
-use insertion::evaluation::template::Template;
-use insertion::space::Space;
+use insertion::{Priors, Space, Template};
 use std::path::{Path, PathBuf};
 use study::{BENCH_ROLES, StudyRecord};
 

@@ -23,18 +23,13 @@ use crate::failure::{Failure, bad_config};
 use files::{Fingers, find, surrogate};
 use input::Place;
 use input::shipped::{Source, UNCERTAINTIES};
-use insertion::evaluation::cell::Priors;
-use insertion::evaluation::evaluator::Evaluator;
-use insertion::evaluation::objective::Measure;
-use insertion::evaluation::robustness::Plan;
-use insertion::evaluation::template::{Template, printable, within_limits};
+use insertion::evaluation::template::{printable, within_limits};
 use insertion::evaluation::uncertainty::Uncertainty;
-use insertion::finger::model::{FingerModelKind, FingerSource};
-use insertion::robot::Robot;
-use insertion::space::Space;
 use insertion::surrogate::Model;
-use insertion::task::Task;
-use insertion::trial::engine::EngineKind;
+use insertion::{
+    EngineKind, Evaluator, FingerModelKind, FingerSource, Measure, Plan, Priors, Robot, Space,
+    Task, Template,
+};
 use measured::Measured;
 use std::sync::Arc;
 use study::{BENCH_ROLES, CELL, FINGER, Inputs, Provenance, sha256};

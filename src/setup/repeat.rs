@@ -1,12 +1,10 @@
 //! Repeats of a trial or an evaluation with small variations.
 
 use super::Setup;
-use crate::context::Context;
-use crate::failure::Failure;
+use crate::{Context, Failure};
 use input::counted;
-use insertion::evaluation::OffsetStep;
-use insertion::evaluation::evaluator::Scenario;
 use insertion::evaluation::robustness::repeat::{Band, Bands, Repeats};
+use insertion::{OffsetStep, Scenario};
 use serde::{Serialize, Serializer};
 use serde_json::json;
 

@@ -2,16 +2,13 @@
 
 use super::files::robot;
 use super::request::RobotRequest;
-use crate::context::not_stopped;
-use crate::failure::Failure;
-use crate::layout;
+use crate::{Failure, layout, not_stopped};
 use connector::check::problems;
 use connector::plan::TILT_DEG;
 use connector::tune::{Effort, Stage, Step, Tuned, Tuner, YAW_DEG, tune};
 use input::units::DEG;
-use insertion::evaluation::{INDIFFERENCE_MM, Window};
-use insertion::outcome::Outcome;
-use insertion::task::Task;
+use insertion::evaluation::INDIFFERENCE_MM;
+use insertion::{Outcome, Task, Window};
 use serde_json::{Value, json};
 use std::sync::atomic::AtomicBool;
 

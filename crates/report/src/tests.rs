@@ -3,18 +3,14 @@ use crate::answer::words;
 use finray::printed::PrintedFinger;
 use input::shipped::{FINGERS, ROBOTS, STIFFNESS};
 use input::units::N_PER_MM;
-use insertion::evaluation::Evaluation;
-use insertion::evaluation::objective::{Aggregate, Goals, Measure, Objectives};
-use insertion::evaluation::tolerance::{Search, evaluate};
-use insertion::finger::Finger;
-use insertion::outcome::{FailureClass, Outcome};
-use insertion::robot::Robot;
-use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design, Space};
+use insertion::evaluation::tolerance::evaluate;
 use insertion::stiffness::parse;
 use insertion::surrogate::{Model, fit};
 use insertion::tests::fake::{Altered, FakeRig};
-use insertion::trial::engine::EngineKind;
-use insertion::trial::{Grasp, Trial};
+use insertion::{
+    Aggregate, DENSITY_KEY, DIRECTION_KEY, Design, EngineKind, Evaluation, FailureClass, Finger,
+    Goals, Grasp, Measure, Objectives, Outcome, Robot, Search, Space, Trial,
+};
 use serde_json::json;
 use std::collections::BTreeMap;
 use std::path::Path;

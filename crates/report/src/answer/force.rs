@@ -1,8 +1,7 @@
 //! Contact force of a finger compared with the limits of its connector and of the robot.
 
-use insertion::evaluation::Evaluation;
-use insertion::evaluation::objective::Measure;
 use insertion::robot::STOP_SHARE;
+use insertion::{Evaluation, Measure};
 use serde::Serialize;
 use study::StudyRecord;
 

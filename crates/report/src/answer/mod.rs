@@ -13,8 +13,7 @@ mod verdict;
 pub mod words;
 
 use calibration::rank_correlation::{Order, RankCorrelation, rank_correlation};
-use insertion::evaluation::Evaluation;
-use insertion::space::Design;
+use insertion::{Design, Evaluation};
 use study::{Recorded, StudyRecord, Volume, Walked, volume};
 
 pub use force::ExcessForce;

@@ -4,9 +4,7 @@ use super::start::Start;
 use super::ties::Ties;
 use super::trust::MeasuredFinger;
 use super::words;
-use insertion::evaluation::Evaluation;
-use insertion::evaluation::objective::Measure;
-use insertion::evaluation::robustness::firm::FirmResult;
+use insertion::{Evaluation, FirmResult, Measure};
 use study::{ByRibs, Recorded, StudyRecord, Walked};
 
 /// Recommended design of a study. For several tasks, ranges and forces are aggregated, and the windows are intersected.

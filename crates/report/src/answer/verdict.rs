@@ -3,10 +3,8 @@
 use super::words::{design as finger, evaluated, interval, mm, outcome, span};
 use super::{Answer, Recommended, Ties};
 use ask_tell::statistics::mean;
-use insertion::evaluation::Evaluation;
-use insertion::evaluation::objective::Measure;
 use insertion::outcome::stop_words;
-use insertion::space::Design;
+use insertion::{Design, Evaluation, Measure};
 use study::{Recorded, StudyRecord, nearest};
 
 /// Share of the space near tied designs ([`Ties::share`]) from which on any of them is recommended.

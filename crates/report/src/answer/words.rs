@@ -1,11 +1,11 @@
 //! Formatting of the designs, numbers and outcomes of answers, for terminal and page alike.
 
 use input::units::N_PER_MM;
-use insertion::evaluation::objective::{Measure, Objectives};
-use insertion::evaluation::{RobustRange, SuccessRate, Window};
-use insertion::outcome::{Outcome, STOP_REMEDY};
-use insertion::space::{DENSITY_KEY, DIRECTION_KEY, Design};
-use insertion::surrogate::Estimate;
+use insertion::evaluation::{RobustRange, SuccessRate};
+use insertion::outcome::STOP_REMEDY;
+use insertion::{
+    DENSITY_KEY, DIRECTION_KEY, Design, Estimate, Measure, Objectives, Outcome, Window,
+};
 use study::{Recorded, StudyConfig, StudyRecord};
 
 /// Returns the number of evaluations after which the search settled (stopped early), and the criterion, in words.

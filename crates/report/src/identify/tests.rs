@@ -10,11 +10,7 @@ use calibration::identify::smoother::Smoothed;
 use calibration::identify::tests::fixtures::synthetic;
 use calibration::identify::unknown::{Unknown, ValueOrigin};
 use input::shipped::{PRIORS, ROBOTS};
-use insertion::evaluation::cell::Priors;
-use insertion::outcome::{FailureClass, Outcome};
-use insertion::robot::Robot;
-use insertion::space::Design;
-use insertion::surrogate::Estimate;
+use insertion::{Design, Estimate, FailureClass, Outcome, Priors, Robot};
 
 const FILE: &str = "<b>1.csv";
 

@@ -5,10 +5,9 @@ use contact::ContactPoint;
 use contact::scene::Pose;
 use input::shipped::TASKS;
 use input::units::MM;
-use insertion::outcome::{FailureClass, Outcome};
-use insertion::task::Stage;
 use insertion::trial::record::Frame;
-use insertion::trial::{PhaseEnd, Poses, Trial};
+use insertion::trial::{PhaseEnd, Poses};
+use insertion::{FailureClass, Outcome, Stage, Trial};
 use nalgebra::{Point3, Vector3};
 
 pub fn task() -> Task {

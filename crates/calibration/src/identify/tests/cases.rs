@@ -7,13 +7,7 @@ use crate::identify::touch::{bias, touch};
 use crate::identify::{read, runs};
 use input::shipped::{ROBOTS, TASKS};
 use input::units::{MM, N_PER_MM};
-use insertion::finger::Finger;
-use insertion::outcome::Outcome;
-use insertion::robot::Robot;
-use insertion::space::Design;
-use insertion::task::Task;
-use insertion::trial::engine::EngineKind;
-use insertion::trial::{Grasp, Tcp};
+use insertion::{Design, EngineKind, Finger, Grasp, Outcome, Robot, Task, Tcp};
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 
 fn usb() -> Task {

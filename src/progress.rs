@@ -30,6 +30,9 @@ pub mod cost {
 const EVERY: Duration = Duration::from_secs(3);
 /// Duration up to which a result counts as read from the cache.
 const CACHED: Duration = Duration::from_millis(5);
+/// Computed work from which on the time left is shown: the first results of several threads take several times longer
+/// than the following ones.
+const MIN_COMPUTED: f64 = 5.0;
 /// Typical numbers of designs confirmed at a cost of [`cost::REPEATED`] and of [`cost::WALKED`].
 const CONFIRMED: [f64; 2] = [5.0, 1.5];
 
@@ -99,7 +102,8 @@ impl Progress {
         let left = self.time_left(cost, self.last.elapsed());
         self.last = Instant::now();
         // A study that may stop early can take longer than expected; the time left is then unknown.
-        let about = |shown: String| match left < Duration::from_secs(1) {
+        let unknown = self.computed.0 < MIN_COMPUTED || left < Duration::from_secs(1);
+        let about = |shown: String| match unknown {
             true => what.to_owned(),
             false => format!("{what}, about {shown} left"),
         };

@@ -11,6 +11,8 @@ use insertion::{FailureClass, Outcome, Stage, Task, Trial};
 pub fn explain(task: &Task, trial: &Trial) -> String {
     let slip = format!("slip {:.1} mm, allowed {:.1}", trial.slip_mm, task.grip.slip_limit / MM);
     match trial.outcome {
+        // Pressed on the rim, which stops a robot, too.
+        Outcome::Failed(FailureClass::PlugMissed) => missed(task, trial),
         Outcome::Failed(_) if trial.robot_stopped => format!("the robot stopped: {STOP_REMEDY}"),
         Outcome::Inserted => format!(
             "inserted {:.1} mm deep, {:.1} degrees off; required: {:.1} mm and {:.1} degrees",
@@ -29,7 +31,6 @@ pub fn explain(task: &Task, trial: &Trial) -> String {
              or friction.finger_plug, and check grip.faces_y_mm and plug.mass_g",
             task.grip.force
         ),
-        Outcome::Failed(FailureClass::PlugMissed) => missed(task, trial),
         Outcome::Failed(FailureClass::Jammed) => jammed(task, trial),
         Outcome::Failed(FailureClass::ContactLossInInsertion) => {
             let phase = trial.phases.last().map_or("the search", |phase| &*phase.name);

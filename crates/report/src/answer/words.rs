@@ -4,7 +4,8 @@ use input::units::N_PER_MM;
 use insertion::evaluation::{RobustRange, SuccessRate};
 use insertion::outcome::STOP_REMEDY;
 use insertion::{
-    DENSITY_KEY, DIRECTION_KEY, Design, Estimate, Measure, Objectives, Outcome, Window,
+    DENSITY_KEY, DIRECTION_KEY, Design, Estimate, FailureClass, Measure, Objectives, Outcome,
+    Window,
 };
 use study::{Recorded, StudyConfig, StudyRecord};
 
@@ -78,14 +79,15 @@ pub fn outcome(outcome: Outcome) -> String {
 const REMEDIES: [&str; 5] = [
     "Check the task's masses, shapes and strokes",
     "Check the grip's force and friction, and that the start is clear of the socket",
-    "Check the task's start and the strokes of its search: the plug does not reach the opening",
+    "Check the task's start, and strokes and preload of its search: the plug misses the opening",
     "Check the clearance of plug and socket, the strokes, and the finger's remote centre",
     "Check the grip's force and friction against the force that the insertion needs",
 ];
 
-/// Returns advice for a nominal start that ends with this outcome, as a sentence without a full stop.
+/// Returns advice for a nominal start that ends with this outcome, as a sentence without a full stop. A plug that misses
+/// is pressed on the rim, which stops a robot, too.
 pub fn remedy(nominal: Outcome, robot_stopped: bool) -> &'static str {
-    match robot_stopped {
+    match robot_stopped && nominal != Outcome::Failed(FailureClass::PlugMissed) {
         true => STOP_REMEDY,
         false => REMEDIES[usize::from(nominal.failure().unwrap_or(0))],
     }

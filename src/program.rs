@@ -81,9 +81,10 @@ pub fn program() -> clap::Command {
     root.subcommands(commands)
 }
 
-/// Returns the position of a command in the help.
-fn place(command: &clap::Command) -> Option<usize> {
-    ORDER.split(' ').position(|name| name == command.get_name())
+/// Returns the position of a command in the help; one that is missing in [`ORDER`] comes last.
+fn place(command: &clap::Command) -> usize {
+    let mut names = ORDER.split(' ');
+    names.position(|name| name == command.get_name()).unwrap_or(usize::MAX)
 }
 
 fn described(command: clap::Command, about: &'static str, example: &'static str) -> clap::Command {

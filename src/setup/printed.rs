@@ -62,7 +62,7 @@ impl PrintRequest {
             }
             None => {
                 let [density, direction] = self.infill.required()?;
-                in_degrees(direction, [0.0, 90.0], 1.0)?;
+                in_degrees(direction, [0.0, 90.0], 0.1)?;
                 (Design::infill(density, direction), None, None)
             }
         };

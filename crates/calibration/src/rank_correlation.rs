@@ -123,12 +123,19 @@ mod tests {
     /// Recomputes the table of the README from the committed ranges.
     #[test]
     fn the_committed_validation_has_these_rank_correlations() {
-        for (task, fingers, rank) in
-            [("ket8", 11, -0.62), ("ket12", 7, 0.85), ("rj45", 11, 0.58), ("usb", 11, -0.07)]
-        {
-            let found = pairs(&validation(task));
+        for (task, fingers, rank, order) in [
+            ("ket8", 11, -0.62, Order::Opposite),
+            ("ket12", 7, 0.85, Order::Like),
+            ("rj45", 11, 0.58, Order::Like),
+            ("usb", 11, -0.07, Order::Chance),
+        ] {
+            let compared = validation(task);
+            let (found, source) = (pairs(&compared), "");
             assert_eq!(found.len(), fingers, "{task}");
-            assert!((spearman(&found).unwrap() - rank).abs() < 0.005, "{task}");
+            let (spearman, best) = (spearman(&found).unwrap(), compared[0].clone());
+            assert!((spearman - rank).abs() < 0.005, "{task}");
+            let found = RankCorrelation { task: task.into(), spearman, fingers, source, best };
+            assert_eq!(found.order(), order, "{task}");
         }
         assert!(validation("mine").is_empty());
     }

@@ -135,7 +135,11 @@ impl<'a> Document<'a> {
             // If no key is similar, it may be the one that is missing.
             let without = if near.is_none() { rest(None, 1) } else { None };
             let missing = without.as_ref().and_then(missing_key);
-            let missing = missing.filter(|key| error.message().contains(&format!("`{key}`")));
+            let fits = |key: &&str| {
+                let named = || rest(Some(key), 1).map(|rest| rest.problem).unwrap_or_default();
+                error.message().contains(&format!("`{key}`")) && !named().contains("invalid type")
+            };
+            let missing = missing.filter(fits);
             let near = near.or(missing);
             let mut found = fault(self.file, self.text, &error, near);
             if let Some(rest) = rest(near.filter(|near| !self.taken.contains(near)), most - 1) {
@@ -386,6 +390,9 @@ mod tests {
         let text = format!("mass_g = 1\nname = 3\n{line}");
         let text = read::<Pair>(&text, "t.toml").unwrap_err().to_string();
         assert!(text.matches(line).count() == 2 && text.contains("| name = 3"), "{text}");
+        let text = "friction = []\nname = \"a\"\nheight_mm = 1\nnote = \"bought\"";
+        let text = read::<Pair>(text, "t.toml").unwrap_err().to_string();
+        assert!(text.contains("missing field `mass_g`") && !text.contains("mean"), "{text}");
         let many: String = (0..20).map(|i| format!("other_{i} = 1\n")).collect();
         let text = read::<Pair>(&many, "t.toml").unwrap_err().to_string();
         assert_eq!(text.matches("unknown field").count(), MAX_FAULTS);

@@ -49,7 +49,10 @@ pub fn other(unit: &str, value: f64, [low, high]: [f64; 2]) -> Option<String> {
 /// radians be beyond the plausible range, degrees.
 pub fn angle(degrees: f64, [low, high]: [f64; 2], step: f64) -> Option<WrongUnit> {
     let steps = degrees / step;
-    if !(low..=high).contains(&(degrees.abs() / DEG)) || (steps - steps.round()).abs() < 1e-6 {
+    // A right angle in four digits is 90.0002 degrees.
+    if !(0.99 * low..=1.01 * high).contains(&(degrees.abs() / DEG))
+        || (steps - steps.round()).abs() < 1e-6
+    {
         return None;
     }
     let degrees = (degrees * 1e4).round() / 1e4;

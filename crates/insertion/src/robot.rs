@@ -240,6 +240,9 @@ mod tests {
         );
         assert_ne!(flat, arm.text);
         Robot::parse(&flat, "r.toml").unwrap();
+        // Its tool would point down in radians, but 280 degrees are none.
+        let far = flat.replace("[0.5, 0, 0, -1.5, 0, 0]", "[280, 303, 208, 34, -84, 0.5]");
+        Robot::parse(&far, "r.toml").unwrap();
         let (five, _) = short.rsplit_once("[[joint]]").unwrap();
         refused(Robot::parse(five, "r.toml"), &["there are 5 [[joint]]"]);
         let heavy = robot_file("ur5e").text.replace("link_mass_kg = 3.7", "link_mass_kg = 3700");

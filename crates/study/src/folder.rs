@@ -254,9 +254,11 @@ impl StudyRecord {
         let file = ConfirmationFile::read(dir, provenance);
         let settled =
             config.settles && file.as_ref().is_some_and(|file| file.settled(evaluations.len()));
-        let file = file.filter(|file| file.complete);
         let confirms = config.optimizes_windows() && !config.conclusion.no_confirm;
-        let confirmation_due = confirms && file.is_none();
+        // A study of another version may have been confirmed in another file.
+        let begun = || provenance.is_some_and(Provenance::is_of_this_program);
+        let confirmation_due = confirms && file.as_ref().map_or_else(begun, |file| !file.complete);
+        let file = file.filter(|file| file.complete);
         let (walked, firm_values) = confirmed_designs(file, &Rule::of(&config), current);
         StudyRecord {
             config,

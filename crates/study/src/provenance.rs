@@ -55,6 +55,11 @@ impl Provenance {
         }
     }
 
+    /// Returns whether this program gives the same simulation results.
+    pub fn is_of_this_program(&self) -> bool {
+        self.simulation_sha256 == SIMULATION_SOURCES
+    }
+
     /// Returns whether both give the same simulation results; measurements and priors may differ.
     pub fn simulates_like(&self, other: &Provenance) -> bool {
         let simulated = |provenance: &Provenance| {

@@ -325,8 +325,8 @@ fn push_text(TunedTask { tuner, tuned, .. }: &TunedTask<'_>, after_n: f64) -> St
     };
     let limit = limits.force.map_or(String::new(), |limit| format!(" (limit {limit:.0} N)"));
     let limited = limits.speed.map_or(String::new(), |v| format!(" (limit {:.0} mm/s)", v / MM));
-    let accepted_n = robot.acceptable_force(task.limits.force).floor();
-    let above = format!("; a study accepts {accepted_n:.0} N (--max-force-n {accepted_n:.0})");
+    let accepted_n = robot.acceptable_force(task.limits.force);
+    let above = format!("; a study accepts at most {accepted_n:.1} N (--max-force-n)");
     let above = if after_n > accepted_n { above } else { String::new() };
     format!(
         "{old:.0} -> {new:.0} mm/s{limited}, largest force {before} -> {after_n:.0} N{limit}{above}"

@@ -40,6 +40,7 @@ fn what_looks_wrong_is_told_with_line_and_column() {
     for (line, column, words) in [
         ("ket8,0.07,0,,,7,,,,", DENSITY_KEY, "in fractions, multiply by 100: 7.00 %"),
         ("ket8,20,0.52,,,7,,,,", DIRECTION_KEY, "0.52 rad is 29.8 degrees"),
+        ("ket8,20,1.5708,,,7,,,,", DIRECTION_KEY, "1.5708 rad is 90.0 degrees"),
         ("ket8,20,0,,,0.0041,,,,", "range_mm", "looks like metres; give millimetres, as in 4.1"),
         ("ket8,20,0,,,7600,,,,", "range_mm", "micrometres; give millimetres, as in 7.6"),
         ("ket8,20,0,0.5,2.5,,,,,", "negative_mm", "excludes 0"),

@@ -17,7 +17,7 @@ const MIN_SHARE: [f64; 2] = [1.0 / 8.0, 1.0 / 20.0];
 /// Largest plausible width of a plug as a share of its opening, in both directions.
 const MAX_SHARE: f64 = 8.0;
 /// Range of plausible tilts, degrees.
-const TILT_DEG: [f64; 2] = [2.0, 15.5];
+const TILT_DEG: [f64; 2] = [0.5, 15.5];
 /// Grip force, and its plausible range, N.
 const FORCE: &str = "grip.force_n";
 const FORCE_N: [f64; 2] = [0.01, 200.0];

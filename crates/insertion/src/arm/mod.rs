@@ -21,6 +21,7 @@ use input::units::{DEG, MM};
 use input::{Check, InputError, wrong_unit};
 use nalgebra::{Point3, Translation3, Unit, UnitQuaternion, Vector3};
 use serde::Deserialize;
+use std::f64::consts::PI;
 
 /// Range of the length of all links of an arm, mm.
 const REACH_MM: [f64; 2] = [100.0, 10_000.0];
@@ -130,7 +131,8 @@ impl RawArm {
             assembly_force: self.assembly_force_n,
         };
         let points_down = |home: Angles| (arm.posture(&home).tcp.rotation * Vector3::z()).z > 0.5;
-        if !points_down(arm.home) && points_down(arm.home / DEG) {
+        let within_a_turn = arm.home.iter().all(|angle| angle.abs() < 2.0 * PI * DEG);
+        if within_a_turn && !points_down(arm.home) && points_down(arm.home / DEG) {
             // Whole numbers are degrees.
             let radians = |angle: f64| wrong_unit::angle(angle / DEG, [0.0, 360.0], 1.0);
             check.unit("home_deg", self.home.into_iter().find_map(radians))?;

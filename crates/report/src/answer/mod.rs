@@ -103,16 +103,24 @@ impl<'a> Answer<'a> {
     /// Returns the first sentence of the answer, with the number of evaluations of an unfinished study.
     pub fn headline(&self) -> String {
         let StudyRecord { config, evaluations, .. } = self.record;
-        let done = || format!(" (unfinished, after {})", config.counted(evaluations.len()));
-        self.verdict.headline(self.contradicted())
+        let done = || match evaluations.len() as u64 >= config.budget {
+            true => " (confirmation incomplete)".to_owned(),
+            false => format!(" (unfinished, after {})", config.counted(evaluations.len())),
+        };
+        self.verdict.headline(self.unsupported())
             + &self.record.unfinished().then(done).unwrap_or_default()
     }
 
-    /// Returns whether the answer is simulated and the simulation ranks the published fingers of no task like the robot.
-    fn contradicted(&self) -> bool {
+    /// Returns whether a range is optimized by simulation, the recommended finger was not measured, and the simulation
+    /// ranks the published fingers of no task like the robot.
+    fn unsupported(&self) -> bool {
+        let (config, tasks) = (&self.record.config, &self.rank_correlations);
         let unlike = |found: &RankCorrelation| found.order() != Order::Like;
-        let tasks = &self.rank_correlations;
-        self.record.on_bench.is_none() && !tasks.is_empty() && tasks.iter().all(unlike)
+        let measured = || self.verdict.finger().and_then(|finger| self.on_robot(finger)).is_some();
+        self.record.on_bench.is_none()
+            && config.objective.single().is_some_and(|measure| measure.unit() == "mm")
+            && !(tasks.is_empty() || measured())
+            && tasks.iter().all(unlike)
     }
 
     /// Returns the evaluation of the design to print according to simulation alone; `None` if there is none.

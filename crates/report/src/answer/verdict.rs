@@ -109,14 +109,15 @@ impl<'a> Verdict<'a> {
         }
     }
 
-    /// Returns the first sentence of the answer. If measurements contradict the simulation, it recommends no print.
-    pub(super) fn headline(&self, contradicted: bool) -> String {
+    /// Returns the first sentence of the answer. Without support by measurements it recommends no
+    /// print.
+    pub(super) fn headline(&self, unsupported: bool) -> String {
         const UNSUPPORTED: &str = "in simulation, not supported by measurements";
         match self {
-            Verdict::Print(design) if contradicted => {
+            Verdict::Print(design) if unsupported => {
                 format!("Best {UNSUPPORTED}: {}", finger(design))
             }
-            Verdict::Any { safe, of } if contradicted => {
+            Verdict::Any { safe, of } if unsupported => {
                 format!("{of} fingers tie {UNSUPPORTED}: {}", finger(safe))
             }
             Verdict::Print(design) => format!("Print the finger with {}", finger(design)),
@@ -206,5 +207,23 @@ fn simulated(found: &Recommended) -> String {
             format!("simulated {objective}{} ({}){note}", mm(range_mm), span(window_mm))
         }
         None => format!("simulated {objective}no range"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn without_support_by_measurements_no_print_is_recommended() {
+        let design = Design::infill(10.0, 26.0);
+        for (verdict, supported, unsupported) in [
+            (Verdict::Print(&design), "Print the finger with 10 %", "Best in simulation, not"),
+            (Verdict::Any { safe: &design, of: 5 }, "Any of 5 fingers", "5 fingers tie in sim"),
+        ] {
+            assert!(verdict.headline(false).starts_with(supported));
+            let headline = verdict.headline(true);
+            assert!(headline.starts_with(unsupported) && !headline.contains("rint "), "{headline}");
+        }
     }
 }

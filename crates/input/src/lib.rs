@@ -390,7 +390,7 @@ mod tests {
         let text = format!("mass_g = 1\nname = 3\n{line}");
         let text = read::<Pair>(&text, "t.toml").unwrap_err().to_string();
         assert!(text.matches(line).count() == 2 && text.contains("| name = 3"), "{text}");
-        let text = "friction = []\nname = \"a\"\nheight_mm = 1\nnote = \"bought\"";
+        let text = "friction = []\nname = \"a\"\nheight_mm = 1\nbought_at = \"bought\"";
         let text = read::<Pair>(text, "t.toml").unwrap_err().to_string();
         assert!(text.contains("missing field `mass_g`") && !text.contains("mean"), "{text}");
         let many: String = (0..20).map(|i| format!("other_{i} = 1\n")).collect();

@@ -111,15 +111,17 @@ impl<'a> Answer<'a> {
             + &self.record.unfinished().then(done).unwrap_or_default()
     }
 
-    /// Returns whether a range is optimized by simulation, the recommended finger was not measured, and the simulation
-    /// ranks the published fingers of no task like the robot.
+    /// Returns whether a range is optimized by simulation, the recommended finger is not the best measured one, and the
+    /// simulation ranks the published fingers of no task like the robot.
     fn unsupported(&self) -> bool {
         let (config, tasks) = (&self.record.config, &self.rank_correlations);
         let unlike = |found: &RankCorrelation| found.order() != Order::Like;
-        let measured = || self.verdict.finger().and_then(|finger| self.on_robot(finger)).is_some();
+        let best_mm = self.measured.iter().fold(0.0, |most: f64, (_, mm)| most.max(*mm));
+        let own_mm = self.verdict.finger().and_then(|finger| self.on_robot(finger));
         self.record.on_bench.is_none()
             && config.objective.single().is_some_and(|measure| measure.unit() == "mm")
-            && !(tasks.is_empty() || measured())
+            && !tasks.is_empty()
+            && own_mm.is_none_or(|mm| mm < best_mm)
             && tasks.iter().all(unlike)
     }
 

@@ -125,11 +125,12 @@ class NextStep(Result):
 class Answer(Result):
     """Recommended action, as ``answer`` of ``--json``.
 
-    ``verdict`` is ``print`` (print ``finger``), ``any`` (print any of the ties), ``measured_before`` (use a finger
-    that was measured), ``choose`` (choose from a Pareto front), ``nothing_inserts`` or ``none_feasible``.
+    ``verdict`` is ``print`` (print ``finger``), ``any`` (print any of the ties), ``simulated`` (``finger`` is the best in
+    simulation, or ties; no measurement supports it), ``measured_before`` (use a finger that was measured), ``choose``
+    (choose from a Pareto front), ``nothing_inserts`` or ``none_feasible``.
     """
 
-    verdict: Literal["print", "any", "measured_before", "choose", "nothing_inserts", "none_feasible"]
+    verdict: Literal["print", "any", "simulated", "measured_before", "choose", "nothing_inserts", "none_feasible"]
     headline: str
     expectation: str
     #: Values of the finger by key.

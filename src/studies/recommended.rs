@@ -55,7 +55,7 @@ pub(super) fn values(
 /// Returns the design recommended by simulation.
 fn simulated(answer: &Answer) -> Value {
     let found = answer.recommended.as_ref().filter(|_| answer.front.is_none());
-    let Some(found) = found.filter(|_| answer.verdict.key() != "nothing_inserts") else {
+    let Some(found) = found.filter(|_| answer.verdict_key() != "nothing_inserts") else {
         return Value::Null;
     };
     let [negative, positive] = [0, 1].map(|end| found.range_mm.map(|_| found.window_mm[end]));
@@ -129,7 +129,7 @@ pub fn advice(answer: &Answer, dir: &Path) -> Value {
     let as_good = one.and_then(|found| found.ties.as_ref());
     let (command, why) = command::next(answer, dir);
     json!({
-        "verdict": answer.verdict.key(),
+        "verdict": answer.verdict_key(),
         "headline": answer.headline(),
         "expectation": expectation(answer),
         "finger": answer.verdict.finger(),

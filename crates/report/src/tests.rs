@@ -194,6 +194,36 @@ fn a_measured_design_shows_its_range_on_a_robot() {
 }
 
 #[test]
+fn without_measurements_no_print_is_recommended_by_headline_json_and_page() {
+    let headline = |study: &StudyRecord| {
+        let answer = crate::answer::Answer::of(study);
+        let (page, headline) = (whole(study), answer.headline());
+        assert!(page.contains(&format!("<h1>{headline}</h1>")), "{headline}");
+        let printed = answer.verdict_key() != "simulated";
+        assert_eq!(page.contains("aria-label=\"the finger to print"), printed, "{headline}");
+        assert_eq!(headline.contains("rint "), printed, "{headline}");
+        headline
+    };
+    let mut study = study();
+    study.config.tasks = vec!["mine".to_owned()];
+    assert!(headline(&study).starts_with("Best in simulation, not measured yet: "));
+    // 6.0 and 5.4 mm differ by more than the indifference, but less than the simulation error.
+    let mut alike = record(vec![walked(0, [12.0, 20.0]), walked(1, [20.0, 20.0])]);
+    alike.config.tasks = vec!["mine".to_owned()];
+    assert!(headline(&alike).starts_with("2 fingers tie within the simulation error, not meas"));
+    // A front of one finger.
+    let mut front = record(vec![walked(0, [20.0, 21.0])]);
+    front.config.objective = "range,peak-force".parse().unwrap();
+    let goals = front.config.goals();
+    for one in &mut front.evaluations {
+        one.score = goals.score(&one.tasks());
+    }
+    assert!(headline(&front).starts_with("Best in simulation, not supported by measurements: "));
+    front.evaluations[0].design = Design::infill(30.0, 20.0);
+    assert!(headline(&front).ends_with(": best in all objectives"), "the best measured one");
+}
+
+#[test]
 fn windows_about_a_given_and_a_taught_start_are_not_compared() {
     let given = walked(0, [20.0, 20.0]).tasks.remove(0);
     let taught = Evaluation { taught: Some(5), ..given.clone() };

@@ -12,8 +12,8 @@ mod trust;
 mod verdict;
 pub mod words;
 
-use calibration::rank_correlation::{Order, RankCorrelation, rank_correlation};
-use insertion::{Design, Evaluation};
+use calibration::rank_correlation::{Order, RankCorrelation, errors_percent, rank_correlation};
+use insertion::{Design, Evaluation, Measure};
 use study::{Recorded, StudyRecord, Volume, Walked, volume};
 
 pub use force::ExcessForce;
@@ -23,7 +23,7 @@ pub use robots::RobotWindow;
 pub use start::Start;
 pub use ties::{SafeChoice, Spread, Ties};
 pub use trust::{MeasuredFinger, Trust};
-pub use verdict::{Verdict, expectation};
+pub use verdict::{Unsupported, Verdict, expectation};
 
 /// Answer of a study.
 #[derive(Debug, Clone)]
@@ -107,22 +107,48 @@ impl<'a> Answer<'a> {
             true => " (confirmation incomplete)".to_owned(),
             false => format!(" (unfinished, after {})", config.counted(evaluations.len())),
         };
-        self.verdict.headline(self.unsupported())
+        self.verdict.headline(self.unsupported().as_ref())
             + &self.record.unfinished().then(done).unwrap_or_default()
     }
 
-    /// Returns whether a range is optimized by simulation, the recommended finger is not the best measured one, and the
-    /// simulation ranks the published fingers of no task like the robot.
-    fn unsupported(&self) -> bool {
-        let (config, tasks) = (&self.record.config, &self.rank_correlations);
-        let unlike = |found: &RankCorrelation| found.order() != Order::Like;
-        let best_mm = self.measured.iter().fold(0.0, |most: f64, (_, mm)| most.max(*mm));
-        let own_mm = self.verdict.finger().and_then(|finger| self.on_robot(finger));
-        self.record.on_bench.is_none()
-            && config.objective.single().is_some_and(|measure| measure.unit() == "mm")
-            && !tasks.is_empty()
-            && own_mm.is_none_or(|mm| mm < best_mm)
-            && tasks.iter().all(unlike)
+    /// Returns the name of the verdict in JSON; a finger without support by measurements is only `simulated`.
+    pub fn verdict_key(&self) -> &'static str {
+        match self.verdict {
+            Verdict::Print(_) | Verdict::Any { .. } | Verdict::Choose { of: 1, .. }
+                if self.unsupported().is_some() =>
+            {
+                "simulated"
+            }
+            _ => self.verdict.key(),
+        }
+    }
+
+    /// Returns the reason why no measurement supports the finger chosen by simulation; `None` if it is the best measured
+    /// one, if the simulation ranks the fingers of a task like the robot, or if no range of a published task is optimized.
+    pub fn unsupported(&self) -> Option<Unsupported> {
+        let objectives = self.record.config.objective.measures();
+        let of_range = |of: &Measure| {
+            matches!(of, Measure::Range | Measure::CentredRange | Measure::RobustRange)
+        };
+        let reason = match &self.trust {
+            Trust::Calibrated { .. } => return None,
+            Trust::Simulated { .. } => "not measured yet",
+            Trust::Published { .. } => {
+                let best_mm = self.measured.iter().fold(0.0, |most: f64, (_, mm)| most.max(*mm));
+                let own_mm = self.verdict.finger().and_then(|finger| self.on_robot(finger));
+                let mut tasks = self.rank_correlations.iter();
+                let supported = own_mm.is_some_and(|mm| mm >= best_mm)
+                    || tasks.any(|found| found.order() == Order::Like)
+                    || !objectives.iter().any(of_range);
+                (!supported).then_some("not supported by measurements")?
+            }
+        };
+        let inserting = self.record.current().iter().filter(|design| design.inserts_on_all());
+        let [error_percent, _] = errors_percent();
+        let ties = |&[low, high]: &[f64; 2]| high - low < error_percent / 100.0 * high;
+        let spread_mm = self.spread_mm.filter(|_| *objectives == [Measure::Range]);
+        let within_error = spread_mm.filter(ties).map(|_| inserting.count());
+        Some(Unsupported { reason, within_error: within_error.filter(|designs| *designs > 1) })
     }
 
     /// Returns the evaluation of the design to print according to simulation alone; `None` if there is none.

@@ -11,7 +11,7 @@ use parameters::numbers::RCC_KEY;
 use study::{Provenance, Recorded, StudyRecord};
 
 /// Names of lines that are omitted here, because other sections of the page show them.
-const ELSEWHERE: [&str; 9] = [
+const ELSEWHERE: [&str; 10] = [
     "best design",
     "firm range",
     "window",
@@ -19,6 +19,7 @@ const ELSEWHERE: [&str; 9] = [
     "from its ribs",
     "ties",
     "safe choice",
+    "least force",
     "  softest",
     "  stiffest",
 ];

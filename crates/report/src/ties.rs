@@ -60,7 +60,10 @@ fn reasons(answer: &Answer, found: &Ties, recorded: &Recorded, named: u64) -> St
     let recommended = answer.verdict.finger() == Some(&recorded.design);
     let best = if recommended { "recommended" } else { "best in simulation" };
     let named = (recorded.index == named).then_some(best);
-    let safe = found.safe.as_ref().filter(|safe| is_recorded(&safe.design)).map(|_| "safe choice");
+    let safe = found.safe.as_ref().filter(|safe| is_recorded(&safe.design)).map(|safe| safe.name());
     let others = found.alternatives.iter().filter(|(_, other, ..)| is_recorded(other));
-    named.into_iter().chain(safe).chain(others.map(|(why, ..)| *why)).collect::<Vec<_>>().join(", ")
+    let mut reasons: Vec<_> =
+        named.into_iter().chain(safe).chain(others.map(|(why, ..)| *why)).collect();
+    reasons.dedup();
+    reasons.join(", ")
 }

@@ -148,7 +148,7 @@ pub fn force(answer: &Answer) -> Option<Line> {
         answer.verdict.finger() != Some(&safe.design.design) && answer.record.on_bench.is_none()
     });
     let remedy = match safe {
-        Some(safe) => format!("take the safe choice, {}", words::design(&safe.design.design)),
+        Some(safe) => format!("take {}, which ties", words::design(&safe.design.design)),
         // Studies with measurements do not support constraints.
         None if answer.record.on_bench.is_some() => {
             format!("try optimize task tune FILE --max-force-n {:.0}", acceptable(answer))
@@ -212,16 +212,16 @@ pub fn tied(answer: &Answer, ties: &Ties) -> Line {
 /// Largest number of parameters whose values are listed.
 const SPREADS: usize = 4;
 
-/// Returns the safe choice and the reason for it, if there is one.
+/// Returns the safe choice, or the tied design with the least force, and the reason for it, if there is one.
 pub fn safe(ties: &Ties) -> Option<Line> {
     let safe = ties.safe.as_ref()?;
     let why = match (safe.measured_mm, safe.force_n) {
         (Some(measured_mm), _) => format!("measured {} on a robot", mm(measured_mm)),
-        (None, Some(force_n)) => format!("least force, {force_n:.0} N"),
+        (None, Some(force_n)) => format!("{force_n:.0} N in simulation"),
         (None, None) => return None,
     };
     let loss = if safe.loss > 0.0 { format!(", {} less", mm(safe.loss)) } else { String::new() };
-    Some(line("safe choice", format!("{}: {why}{loss}", words::design(&safe.design.design))))
+    Some(line(safe.name(), format!("{}: {why}{loss}", words::design(&safe.design.design))))
 }
 
 /// Returns the smallest and largest range of the designs that insert, and the number of the others.

@@ -56,6 +56,13 @@ pub struct SafeChoice<'a> {
     pub loss: f64,
 }
 
+impl SafeChoice<'_> {
+    /// Returns the name of the choice: only a measured finger is safe.
+    pub fn name(&self) -> &'static str {
+        if self.measured_mm.is_some() { "safe choice" } else { "least force" }
+    }
+}
+
 impl Spread<'_> {
     /// Returns the values in words: `10 to 11 %`.
     pub fn words(&self) -> String {
@@ -176,7 +183,7 @@ fn narrow(record: &StudyRecord, index: u64, losses: &[(&Recorded, f64)]) -> Opti
 
 #[cfg(test)]
 mod tests {
-    use crate::answer::{Answer, Verdict};
+    use crate::answer::{Answer, SafeChoice, Ties, Verdict, lines};
     use study::StudyRecord;
 
     fn fixture() -> StudyRecord {
@@ -207,6 +214,12 @@ mod tests {
         let gentlest = gentlest.fold(f64::INFINITY, f64::min);
         assert!(safe.measured_mm.is_some() || safe.force_n == Some(gentlest));
         assert_eq!(answer.verdict.finger(), Some(&safe.design.design));
+        let named = |measured_mm| {
+            let ties =
+                Ties { safe: Some(SafeChoice { measured_mm, ..safe.clone() }), ..found.clone() };
+            lines::safe(&ties).unwrap().0
+        };
+        assert_eq!([named(Some(4.7)), named(None)], ["safe choice", "least force"]);
     }
 
     #[test]

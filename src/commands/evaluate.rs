@@ -9,9 +9,9 @@ use crate::{
 };
 use calibration::experiments::Experiment;
 use insertion::evaluation::robustness::repeat::Bands;
-use insertion::{Evaluation, Outcome, Plan, Search, grid_mm};
-use report::answer::lines;
+use insertion::{Evaluation, Outcome, Plan, Scenario, Search, grid_mm};
 use report::answer::words::{self, mm, number};
+use report::answer::{ExcessForce, lines};
 use serde::{Serialize, Serializer};
 use std::collections::BTreeMap;
 use std::sync::atomic::AtomicBool;
@@ -66,9 +66,6 @@ pub struct Evaluated {
     /// Measurements of this finger on the bench.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub measured: Vec<Experiment>,
-    /// Largest acceptable contact force for connector and robot, N.
-    #[serde(skip)]
-    pub limit_n: f64,
     /// Bands of offsets at the window's ends in which repeats have different outcomes, with `--repeat`, and the number
     /// of impossible draws that were left out.
     #[serde(serialize_with = "serialize_bands", skip_serializing_if = "Option::is_none")]
@@ -120,8 +117,7 @@ impl Request {
         let repeat = self.repeat.filter(|_| window.nominal == Outcome::Inserted);
         let bands = repeat.map(bands).transpose()?;
         context.end();
-        let limit_n = setup.evaluator.robot.acceptable_force(chosen.scenario.task.limits.force);
-        Ok(Evaluated { chosen, evaluation, bands, computed, wall_s, measured, limit_n })
+        Ok(Evaluated { chosen, evaluation, bands, computed, wall_s, measured })
     }
 
     /// Returns the setup, and the plan of the trials under drawn errors.
@@ -222,7 +218,11 @@ impl Evaluated {
     fn text(&self) -> String {
         let Evaluated { chosen, evaluation, .. } = self;
         let [c1, c2, c3, c4] = evaluation.failure_counts;
-        let mut rest = vec![("range".to_owned(), mm(evaluation.window.range_mm()))];
+        let Scenario { task, robot, .. } = &chosen.scenario;
+        let force = ExcessForce::on(&task.name, evaluation, (task.limits.force, Some(robot)));
+        let force = force.map(|excess| ("force".to_owned(), excess.words(&robot.name)));
+        let mut rest: Vec<_> = force.into_iter().chain(lines::most_stops(evaluation)).collect();
+        rest.push(("range".to_owned(), mm(evaluation.window.range_mm())));
         rest.extend(self.measured_lines());
         rest.extend(lines::window(evaluation));
         let failures = format!(
@@ -230,15 +230,8 @@ impl Evaluated {
             evaluation.diverged, evaluation.trials
         );
         rest.push(("failures".to_owned(), failures));
-        let mut force = number(evaluation.peak_force_n, 1, "N");
-        if evaluation.peak_force_n > self.limit_n {
-            force += &format!(
-                ", above the acceptable force of connector and robot, {:.0} N",
-                self.limit_n
-            );
-        }
-        rest.push(("peak force".to_owned(), force));
-        let mating = words::mating_force(chosen.scenario.task.largest_mating_force());
+        rest.push(("peak force".to_owned(), number(evaluation.peak_force_n, 1, "N")));
+        let mating = words::mating_force(task.largest_mating_force());
         rest.push(("mating force".to_owned(), mating));
         rest.extend(lines::taught(evaluation.taught.map(grid_mm)));
         rest.extend(lines::drawn(evaluation));

@@ -55,10 +55,8 @@ impl Sweep {
             let (evaluation, _) =
                 evaluator.evaluate_scenario(&chosen.scenario, plan).map_err(Failure::input)?;
             let wall_s = clock.elapsed().as_secs_f64();
-            let connector = chosen.scenario.task.limits.force;
-            let limit_n = setup.evaluator.robot.acceptable_force(connector);
             let (bands, computed, measured) = (None, None, Vec::new());
-            Ok(Evaluated { chosen, evaluation, bands, computed, wall_s, measured, limit_n })
+            Ok(Evaluated { chosen, evaluation, bands, computed, wall_s, measured })
         };
         let found: Vec<_> = self.pool.install(|| fingers.par_iter().map(one).collect());
         not_stopped(stop)?;

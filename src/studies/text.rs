@@ -29,7 +29,7 @@ pub fn analyses(PostAnalysis { levers, robots, .. }: &PostAnalysis) -> String {
 /// Returns the text of the answer and the next command.
 fn answer_text(answer: &Answer, dir: &Path, verbose: &str) -> String {
     // First, since the following lines may recommend printing the finger.
-    let mut text = layout::lines(lines::force(answer));
+    let mut text = layout::lines(lines::first(answer));
     text += &format!("{}\n{}\n", answer.headline(), expectation(answer));
     text += &layout::lines(lines::brief(answer));
     text += verbose;

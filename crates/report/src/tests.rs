@@ -194,6 +194,28 @@ fn a_measured_design_shows_its_range_on_a_robot() {
 }
 
 #[test]
+fn stops_that_end_most_trials_precede_the_range() {
+    let mut study = record(vec![walked(0, [20.0, 20.0])]);
+    let trials = study.evaluations[0].tasks[0].trials;
+    let text = |stops: u32| {
+        format!("robot stop in {stops} of {trials} trials: a plug seated by then is inserted")
+    };
+    for (stops, first) in [(trials / 2, false), (trials / 2 + 1, true)] {
+        study.evaluations[0].tasks[0].robot_stops = stops;
+        let answer = crate::answer::Answer::of(&study);
+        let (above, below) =
+            (crate::answer::lines::first(&answer), crate::answer::lines::brief(&answer));
+        let place = |lines: &[(String, String)]| {
+            lines.iter().filter(|(_, line)| line.contains(&text(stops))).count()
+        };
+        assert_eq!([place(&above), place(&below)], [usize::from(first), usize::from(!first)]);
+        let page = html(&study);
+        let page = page.split_once("<h1>").map(|(before, _)| before.contains(&text(stops)));
+        assert_eq!(page, Some(first));
+    }
+}
+
+#[test]
 fn without_measurements_no_print_is_recommended_by_headline_json_and_page() {
     let headline = |study: &StudyRecord| {
         let answer = crate::answer::Answer::of(study);

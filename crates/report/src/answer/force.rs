@@ -1,9 +1,9 @@
 //! Contact force of a finger compared with the limits of its connector and of the robot.
 
 use insertion::robot::STOP_SHARE;
-use insertion::{Evaluation, Measure};
+use insertion::{Evaluation, Measure, Robot};
 use serde::Serialize;
-use study::StudyRecord;
+use study::{ForceLimits, StudyRecord};
 
 /// Contact force above the limit of a connector, or above the acceptable share of the force at which the robot stops.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -19,21 +19,28 @@ pub struct ExcessForce {
 }
 
 impl ExcessForce {
-    /// Returns the excess on the first task whose contact force is not acceptable; `None` if there is none.
+    /// Returns the excess on the first task of a study whose contact force is not acceptable; `None` if there is none.
     pub fn of(record: &StudyRecord, tasks: &[&Evaluation]) -> Option<Self> {
-        let limits = &record.limits;
-        let exceeds = |(place, (task, evaluation)): (usize, (&str, &&Evaluation))| {
-            let peak_force_n = Measure::PeakForce.value(evaluation)?;
-            if peak_force_n <= limits.acceptable(place) {
-                return None;
-            }
-            let connector = limits.connectors.get(place).copied().flatten();
-            let connector = connector.filter(|&limit| peak_force_n > limit);
-            let limit_n = connector.or(limits.robot.as_ref().map(|robot| robot.stop_force))?;
-            let of_connector = connector.is_some();
-            Some(ExcessForce { task: task.to_owned(), peak_force_n, limit_n, of_connector })
+        let ForceLimits { connectors, robot, .. } = &record.limits;
+        let on = |(place, (task, evaluation)): (usize, (&str, &&Evaluation))| {
+            let connector = connectors.get(place).copied().flatten();
+            Self::on(task, evaluation, (connector, robot.as_ref()))
         };
-        record.config.tasks().zip(tasks).enumerate().find_map(exceeds)
+        record.config.tasks().zip(tasks).enumerate().find_map(on)
+    }
+
+    /// Returns the excess of an evaluation on a task; `None` if connector (limit in N) and robot withstand its force.
+    pub fn on(
+        task: &str,
+        evaluation: &Evaluation,
+        (connector, robot): (Option<f64>, Option<&Robot>),
+    ) -> Option<Self> {
+        let peak_force_n = Measure::PeakForce.value(evaluation)?;
+        let connector = connector.filter(|&limit| peak_force_n > limit);
+        let robot = robot.filter(|robot| peak_force_n > robot.acceptable_force(None));
+        let limit_n = connector.or(robot.map(|robot| robot.stop_force))?;
+        let (task, of_connector) = (task.to_owned(), connector.is_some());
+        Some(ExcessForce { task, peak_force_n, limit_n, of_connector })
     }
 
     /// Returns the force and the limit in words: `up to 149 N on ket8: more than 90 % of the

@@ -82,7 +82,7 @@ pub fn simulated(answer: &Answer, found: &Recommended) -> Vec<Line> {
     let of_task = |task: &OnTask| {
         let window = &task.measured.window;
         let [below, above] = [window.end_negative, window.end_positive].map(words::end);
-        let (on, stops) = (words::on(config, task.name), stops(task.measured));
+        let (on, stops) = (words::on(config, task.name), some_stops(task.measured));
         let ends = line("ends", format!("{below} below, {above} above{on}{stops}"));
         iter::once(ends).chain(drawn(task.measured)).collect::<Vec<_>>()
     };
@@ -138,6 +138,13 @@ pub fn caveats(answer: &Answer) -> Vec<Line> {
     let robot = answer.record.limits.robot.as_ref().and_then(Robot::remark);
     let robot = robot.map(|text| line("warning", text));
     advice.into_iter().chain(extrapolated).chain(warnings).chain(robot).collect()
+}
+
+/// Returns the warnings that precede the recommendation: a contact force above a limit, and protective stops of the robot
+/// that end most trials.
+pub fn first(answer: &Answer) -> Vec<Line> {
+    let tasks = answer.finger_and_evaluations().map_or(Vec::new(), |(_, tasks)| tasks);
+    force(answer).into_iter().chain(tasks.into_iter().filter_map(most_stops)).collect()
 }
 
 /// Returns a contact force above the limit of connector or robot, with a remedy.
@@ -346,18 +353,25 @@ pub fn window(evaluation: &Evaluation) -> Vec<Line> {
     let [below, above] = [window.end_negative, window.end_positive].map(end);
     vec![
         line("window", format!("{} mm", span(ends_mm(window)))),
-        line("ends", format!("{below} below, {above} above{}", stops(evaluation))),
+        line("ends", format!("{below} below, {above} above{}", some_stops(evaluation))),
     ]
 }
 
-/// Returns the number of trials that a protective stop of the robot ended, in words; empty if there are none.
+/// Returns a warning if a protective stop of the robot ended most trials, for the place before the range.
+pub fn most_stops(evaluation: &Evaluation) -> Option<Line> {
+    let most = evaluation.robot_stops > evaluation.trials / 2;
+    most.then(|| line("warning", stops(evaluation)))
+}
+
+/// Returns `; ` and the number of trials that a protective stop of the robot ended, for the line of the ends; empty if
+/// there are none, or if [`most_stops`] has it.
+fn some_stops(evaluation: &Evaluation) -> String {
+    let some = (1..=evaluation.trials / 2).contains(&evaluation.robot_stops);
+    if some { format!("; {}", stops(evaluation)) } else { String::new() }
+}
+
 fn stops(Evaluation { robot_stops, trials, .. }: &Evaluation) -> String {
-    let text = || {
-        format!(
-            "; robot stop in {robot_stops} of {trials} trials: a plug seated by then is inserted"
-        )
-    };
-    (*robot_stops > 0).then(text).unwrap_or_default()
+    format!("robot stop in {robot_stops} of {trials} trials: a plug seated by then is inserted")
 }
 
 /// Returns the predicted stiffness, its uncertainty, and whether it is an extrapolation.

@@ -120,6 +120,11 @@ fn a_cancelled_command_ends_as_interrupted() {
         let ended = keywords::call(COMMANDS, name, &words, &context);
         assert!(matches!(ended.err(), Some(Failure::Interrupted(None))), "{name}");
     }
+    let mut cached = calibrate.clone();
+    cached["cache"] = json!("unused");
+    let ended = keywords::call(COMMANDS, "calibrate", cached.as_object().unwrap(), &context);
+    let hint = "interrupted; the same command continues from the cache";
+    assert_eq!(ended.err().map(|failure| failure.to_string()).as_deref(), Some(hint));
 }
 
 #[test]

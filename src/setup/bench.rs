@@ -91,6 +91,7 @@ impl CalibrationRequest {
         more: &[Design],
         context: &Context<'a>,
     ) -> Result<Prepared<'a>, Failure> {
+        context.cancel_on_interrupt()?;
         let source = find("file of priors", PRIORS, &self.priors)?;
         let priors = Priors::parse(&source.text, &source.file).map_err(Failure::input)?;
         let setup = bench.setup(measurements, &priors)?;
@@ -155,7 +156,12 @@ impl<'a> CalibrationContext<'a> {
             Subject::new(&simulation, space, emulator, experiments, more)
         };
         let subjects = evaluator.templates.iter().map(subject).collect::<Result<Vec<_>, _>>();
-        self.context.check()?;
+        self.context.check().map_err(|failure| match self.cache {
+            Some(_) => {
+                Failure::Interrupted(Some("the same command continues from the cache".into()))
+            }
+            None => failure,
+        })?;
         let subjects = subjects.map_err(|error| match error {
             CalibrationError::NoFit(..) => Failure::running(error.to_string()),
             CalibrationError::Impossible(_) => Failure::input(error),

@@ -69,7 +69,7 @@ fn drawing_and_files(answer: &Answer, files: &PageFiles) -> Option<Markup> {
     let first = answer.record.config.objective.first().name();
     let best = answer.front.as_ref().map_or(String::new(), |_| format!(", best in {first}"));
     let caption = format!("{}{best}, {} ribs", design(finger), geometry.ribs);
-    let which = match answer.unsupported() {
+    let which = match answer.simulated() {
         Some(_) => "the best finger in simulation",
         None => "the finger to print",
     };

@@ -233,6 +233,8 @@ fn without_measurements_no_print_is_recommended_by_headline_json_and_page() {
     let mut alike = record(vec![walked(0, [12.0, 20.0]), walked(1, [20.0, 20.0])]);
     alike.config.tasks = vec!["mine".to_owned()];
     assert!(headline(&alike).starts_with("2 fingers tie within the simulation error, not meas"));
+    alike.config.indifference_mm = 1.0;
+    assert!(headline(&alike).starts_with("2 fingers tie in simulation, not measured yet: "));
     // A front of one finger.
     let mut front = record(vec![walked(0, [20.0, 21.0])]);
     front.config.objective = "range,peak-force".parse().unwrap();

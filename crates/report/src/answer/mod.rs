@@ -23,7 +23,7 @@ pub use robots::RobotWindow;
 pub use start::Start;
 pub use ties::{SafeChoice, Spread, Ties};
 pub use trust::{MeasuredFinger, Trust};
-pub use verdict::{Unsupported, Verdict, expectation};
+pub use verdict::{Verdict, expectation};
 
 /// Answer of a study.
 #[derive(Debug, Clone)]
@@ -107,48 +107,52 @@ impl<'a> Answer<'a> {
             true => " (confirmation incomplete)".to_owned(),
             false => format!(" (unfinished, after {})", config.counted(evaluations.len())),
         };
-        self.verdict.headline(self.unsupported().as_ref())
+        self.simulated().unwrap_or_else(|| self.verdict.headline())
             + &self.record.unfinished().then(done).unwrap_or_default()
     }
 
-    /// Returns the name of the verdict in JSON; a finger without support by measurements is only `simulated`.
+    /// Returns the name of the verdict in JSON.
     pub fn verdict_key(&self) -> &'static str {
-        match self.verdict {
-            Verdict::Print(_) | Verdict::Any { .. } | Verdict::Choose { of: 1, .. }
-                if self.unsupported().is_some() =>
-            {
-                "simulated"
-            }
-            _ => self.verdict.key(),
-        }
+        if self.simulated().is_some() { "simulated" } else { self.verdict.key() }
     }
 
-    /// Returns the reason why no measurement supports the finger chosen by simulation; `None` if it is the best measured
-    /// one, if the simulation ranks the fingers of a task like the robot, or if no range of a published task is optimized.
-    pub fn unsupported(&self) -> Option<Unsupported> {
-        let objectives = self.record.config.objective.measures();
+    /// Returns the headline of a finger that no measurement supports: of its task there are none, or a range is optimized,
+    /// the finger is not the best measured one, and the simulation ranks the published fingers of no task like the robot.
+    pub fn simulated(&self) -> Option<String> {
         let of_range = |of: &Measure| {
             matches!(of, Measure::Range | Measure::CentredRange | Measure::RobustRange)
         };
-        let reason = match &self.trust {
-            Trust::Calibrated { .. } => return None,
+        let unlike = |found: &RankCorrelation| found.order() != Order::Like;
+        let best_mm = self.measured.iter().fold(0.0, |most: f64, (_, mm)| most.max(*mm));
+        let own_mm = self.verdict.finger().and_then(|finger| self.on_robot(finger));
+        let refuted = own_mm.is_none_or(|mm| mm < best_mm)
+            && self.record.config.objective.measures().iter().any(of_range)
+            && self.rank_correlations.iter().all(unlike);
+        let why = match &self.trust {
             Trust::Simulated { .. } => "not measured yet",
-            Trust::Published { .. } => {
-                let best_mm = self.measured.iter().fold(0.0, |most: f64, (_, mm)| most.max(*mm));
-                let own_mm = self.verdict.finger().and_then(|finger| self.on_robot(finger));
-                let mut tasks = self.rank_correlations.iter();
-                let supported = own_mm.is_some_and(|mm| mm >= best_mm)
-                    || tasks.any(|found| found.order() == Order::Like)
-                    || !objectives.iter().any(of_range);
-                (!supported).then_some("not supported by measurements")?
-            }
+            Trust::Published { .. } if refuted => "not supported by measurements",
+            _ => return None,
         };
-        let inserting = self.record.current().iter().filter(|design| design.inserts_on_all());
-        let [error_percent, _] = errors_percent();
-        let ties = |&[low, high]: &[f64; 2]| high - low < error_percent / 100.0 * high;
-        let spread_mm = self.spread_mm.filter(|_| *objectives == [Measure::Range]);
-        let within_error = spread_mm.filter(ties).map(|_| inserting.count());
-        Some(Unsupported { reason, within_error: within_error.filter(|designs| *designs > 1) })
+        let found = match (&self.verdict, self.within_error()) {
+            (Verdict::Any { of, .. }, _) => format!("{of} fingers tie in simulation"),
+            (Verdict::Print(_), Some(of)) => {
+                format!("{of} fingers tie within the simulation error")
+            }
+            (Verdict::Print(_) | Verdict::Choose { of: 1, .. }, _) => {
+                "Best in simulation".to_owned()
+            }
+            _ => return None,
+        };
+        Some(format!("{found}, {why}: {}", words::design(self.verdict.finger()?)))
+    }
+
+    /// Returns the number of designs that insert, if the range is optimized and their ranges differ by less than the
+    /// smallest error of the simulation on the published tasks.
+    fn within_error(&self) -> Option<usize> {
+        let range = self.record.config.objective.single() == Some(Measure::Range);
+        let [low, high] = self.spread_mm.filter(|_| range)?;
+        let of = self.record.current().iter().filter(|design| design.inserts_on_all()).count();
+        (of > 1 && high - low < errors_percent()[0] / 100.0 * high).then_some(of)
     }
 
     /// Returns the evaluation of the design to print according to simulation alone; `None` if there is none.

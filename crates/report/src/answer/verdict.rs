@@ -53,16 +53,6 @@ pub enum Verdict<'a> {
     NoneFeasible,
 }
 
-/// Lack of measurements that support a finger chosen by simulation.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Unsupported {
-    /// The lack, in words.
-    pub reason: &'static str,
-    /// Number of designs that insert, if their ranges differ by less than the smallest error of the simulation on the
-    /// published tasks.
-    pub within_error: Option<usize>,
-}
-
 impl<'a> Verdict<'a> {
     pub(super) fn of(answer: &Answer<'a>) -> Self {
         if let Some((place, nearest)) = answer.record.unusable() {
@@ -119,24 +109,8 @@ impl<'a> Verdict<'a> {
         }
     }
 
-    /// Returns the first sentence of the answer. Without support by measurements it recommends no
-    /// print.
-    pub(super) fn headline(&self, unsupported: Option<&Unsupported>) -> String {
-        if let Some(Unsupported { reason, within_error }) = unsupported {
-            match (self, within_error) {
-                (Verdict::Print(design), Some(of)) => {
-                    let tie = format!("{of} fingers tie within the simulation error");
-                    return format!("{tie}, {reason}: {}", finger(design));
-                }
-                (Verdict::Print(design) | Verdict::Choose { first: design, of: 1 }, _) => {
-                    return format!("Best in simulation, {reason}: {}", finger(design));
-                }
-                (Verdict::Any { safe, of }, _) => {
-                    return format!("{of} fingers tie in simulation, {reason}: {}", finger(safe));
-                }
-                _ => {}
-            }
-        }
+    /// Returns the first sentence of the answer.
+    pub(super) fn headline(&self) -> String {
         match self {
             Verdict::Print(design) => format!("Print the finger with {}", finger(design)),
             Verdict::Any { safe, of } => {
@@ -225,27 +199,5 @@ fn simulated(found: &Recommended) -> String {
             format!("simulated {objective}{} ({}){note}", mm(range_mm), span(window_mm))
         }
         None => format!("simulated {objective}no range"),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn without_support_by_measurements_no_print_is_recommended() {
-        let design = Design::infill(10.0, 26.0);
-        let one = || Verdict::Choose { first: &design, of: 1 };
-        for (verdict, within_error, supported, unsupported) in [
-            (Verdict::Print(&design), None, "Print the finger with 10 %", "Best in simulation, no"),
-            (Verdict::Print(&design), Some(9), "Print the finger", "9 fingers tie within the sim"),
-            (Verdict::Any { safe: &design, of: 5 }, None, "Any of 5 fingers", "5 fingers tie in"),
-            (one(), None, "Print the finger with 10 %", "Best in simulation, not measured yet: 10"),
-        ] {
-            assert!(verdict.headline(None).starts_with(supported));
-            let lack = Unsupported { reason: "not measured yet", within_error };
-            let headline = verdict.headline(Some(&lack));
-            assert!(headline.starts_with(unsupported) && !headline.contains("rint "), "{headline}");
-        }
     }
 }

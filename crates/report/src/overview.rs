@@ -69,15 +69,11 @@ fn drawing_and_files(answer: &Answer, files: &PageFiles) -> Option<Markup> {
     let first = answer.record.config.objective.first().name();
     let best = answer.front.as_ref().map_or(String::new(), |_| format!(", best in {first}"));
     let caption = format!("{}{best}, {} ribs", design(finger), geometry.ribs);
-    let which = match answer.simulated() {
-        Some(_) => "the best finger in simulation",
-        None => "the finger to print",
-    };
     let svg = sheet::part(&geometry);
     let svg = COLOURS.iter().fold(svg, |svg, (from, to)| svg.replace(from, to));
     let names = printer::FILES.into_iter().filter(|(file, _)| files.files.contains(file));
     Some(html! {
-        div.finger { (figure(&svg, which, &caption)) }
+        div.finger { (figure(&svg, "drawing of the finger", &caption)) }
         p.files { @for (file, name) in names { a.button href=(file) { (name) } } }
     })
 }

@@ -118,7 +118,7 @@ impl<'a> Answer<'a> {
 
     /// Returns the headline of a finger that no measurement supports: of its task there are none, or a range is optimized,
     /// the finger is not the best measured one, and the simulation ranks the published fingers of no task like the robot.
-    pub fn simulated(&self) -> Option<String> {
+    fn simulated(&self) -> Option<String> {
         let of_range = |of: &Measure| {
             matches!(of, Measure::Range | Measure::CentredRange | Measure::RobustRange)
         };

@@ -104,12 +104,19 @@ fn gaps(plug: &ConvexBody) -> Option<Problem> {
 
 pub(super) fn mass(case: &TaskBodies) -> Option<Problem> {
     let mass = case.task.plug.mass;
-    let volume: f64 = case.plug.parts.iter().map(|part| geometry::volume(&part.solid)).sum();
-    let density = mass / volume;
+    let parts = case.plug.parts.iter();
+    let sum: f64 = parts.clone().map(|part| geometry::volume(&part.solid)).sum();
+    // Imported parts can be the skin of a solid.
+    let corners: Vec<_> = parts.flat_map(|part| part.solid.corners()).collect();
+    let (corners, faces) = geometry::hull(&corners)?;
+    let hull = geometry::surface_moments(&corners, &faces).0;
     let [low, high] = DENSITIES;
-    if (low..=high).contains(&density) {
+    let volume = [sum, hull].into_iter().find(|volume| (low..=high).contains(&(mass / volume)));
+    if volume.is_some() {
         return None;
     }
+    let volume = if mass / sum < low { sum } else { hull };
+    let density = mass / volume;
     let [plastic, steel] = USUAL.map(|usual| usual * volume / GRAM);
     let than = if density < low { "less than foam" } else { "more than tungsten" };
     let (grams, cm3) = (mass / GRAM, volume * 1e6);

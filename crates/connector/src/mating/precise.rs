@@ -18,8 +18,9 @@ const MAX_CELLS: f64 = 1.5e6;
 const LIFT: f64 = 0.1 * MM;
 /// Width of the margin around interfering cells that is left out with them, m.
 const MARGIN: f64 = 0.1 * MM;
-/// Number of times that the plug is centred, in x and then in y.
-const ROUNDS: usize = 2;
+/// Least and largest number of times that the plug is centred, in x and then in y: a pose at a wall, with a spring across
+/// it, has play in x only after it was centred in y and what it then overlaps of the spring was left out.
+const ROUNDS: [usize; 2] = [2, 5];
 
 /// Measurement of play and resting height; cells in which the parts interfere are left out.
 struct PlayMeasurement<'a> {
@@ -168,8 +169,11 @@ pub fn mate(parts: &Parts, scene: &Scene, pose: &Pose, max_play: f64) -> Mate {
     measurement.leave_out(fine.overlap(pose));
     let height = pose.z + LIFT;
     let mut play_m = [0.0; 2];
-    for _ in 0..ROUNDS {
+    for round in 1..=ROUNDS[1] {
         play_m = [0, 1].map(|axis| measurement.centre(axis, height, 2.0 * max_play));
+        if round >= ROUNDS[0] && play_m.iter().all(|play| *play > 0.0) {
+            break;
+        }
     }
     let rest = measurement.rest();
     let z = if pose.through || (rest - pose.z).abs() > LIFT { pose.z } else { rest };

@@ -53,6 +53,20 @@ fn block(at: [f64; 2], size: [f64; 2], range: [f64; 2]) -> Mesh {
     solid(&rectangle(at, size), range)
 }
 
+/// Sides and lower end of a tapered block with these sizes at its ends, mm.
+fn taper([low, high]: [[f64; 2]; 2], [bottom, top]: [f64; 2]) -> Mesh {
+    let at = |line: Vec<[f64; 2]>, z: f64| -> Vec<_> {
+        line.into_iter().map(|[x, y]| mm(x, y, z)).collect()
+    };
+    let (a, b) = (at(rectangle([0.0; 2], low), bottom), at(rectangle([0.0; 2], high), top));
+    let side = |i: usize| {
+        let j = (i + 1) % 4;
+        [[a[i], a[j], b[j]], [a[i], b[j], b[i]]]
+    };
+    let end = [[a[0], a[2], a[1]], [a[0], a[3], a[2]]];
+    (0..4).flat_map(side).chain(end).collect()
+}
+
 /// Mesh in another frame, and the pose of that frame in its own.
 fn hidden(mesh: &Mesh, number: usize) -> (Mesh, Isometry3<f64>) {
     let turn = UnitQuaternion::from_rotation_matrix(&turns()[number % 24]);
@@ -157,6 +171,25 @@ fn a_spring_on_one_side_is_left_out_of_the_play() {
     let spring = block([1.45, 0.0], [0.3, 0.6], [1.0, 2.0]);
     let socket = [hole([6.0, 5.0], [3.2, 2.2], 4.0), spring].concat();
     close(&found(&peg([3.0, 2.0]), &socket, 5).0, [0.0, 0.0, 2.0], [0.2, 0.2]);
+}
+
+/// The key has the play of the plug, and the spring, which overlaps the plug by 0.3 mm, is on another side. The taper lets
+/// the plug rest deepest in a corner, where it overlaps less of the spring.
+#[test]
+fn a_spring_beside_a_key_is_left_out_of_the_play() {
+    let tip = taper([[9.2, 3.2], [10.0, 4.0]], [-8.0, -6.8]);
+    let blade = block([0.0; 2], [10.0, 4.0], [-6.8, 0.0]);
+    let key = block([5.4, 0.0], [0.8, 1.5], [-5.0, 0.0]);
+    let plug = [tip, blade, key, block([0.0; 2], [14.0, 9.0], [0.0, 18.0])].concat();
+    let socket = [
+        tube([0.0; 2], [18.0, 12.0], [11.9, 4.2], [-8.0, 0.0]),
+        block([-5.525, 0.0], [0.85, 4.2], [-8.0, 0.0]),
+        block([5.525, 1.475], [0.85, 1.25], [-8.0, 0.0]),
+        block([5.525, -1.475], [0.85, 1.25], [-8.0, 0.0]),
+        block([0.0, 1.9], [2.0, 0.4], [-6.0, -3.5]),
+        block([0.0; 2], [18.0, 12.0], [-10.0, -8.0]),
+    ];
+    close(&found(&plug, &socket.concat(), 5).0, [0.0; 3], [0.2, 0.2]);
 }
 
 /// A press fit has no walls that could be springs.

@@ -71,9 +71,11 @@ commands() {
     "$optimize" trial $finger --log log.csv >/dev/null
     cp "$root/tasks/usb.toml" task.toml
     local lines=("levers $finger --engine direct --svg OUT.svg" "map $finger --engine direct --svg OUT.svg"
-        "task tune task.toml --engine fake --out OUT.toml" "identify --task usb --runs runs.csv --out OUT.toml")
+        "task tune task.toml --engine fake --out OUT/task.toml" "identify --task usb --runs runs.csv --out OUT.toml")
     for line in "${lines[@]}"; do
         out=${line##* } log=whole-$count
+        # A tuned task is named after its file.
+        mkdir -p "$log" killed
         # shellcheck disable=SC2086
         ms=$(date +%s%N) && "$optimize" ${line/OUT/$log} >/dev/null 2>&1 && ms=$((($(date +%s%N) - ms) / 1000000))
         for ((i = 0; i < wanted / 4; i++)); do

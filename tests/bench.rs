@@ -10,8 +10,12 @@ fn measurements_are_added_checked_and_refused() {
         optimize_line(&format!("measure add {file} --task ket8 --density 20 --direction {more}"))
     };
     optimize_line("measure add --out bench.csv").fails(2, &["'--out", "optimize measure add FILE"]);
-    add("0 --range-mm 5.7").succeeds();
-    add("10 --negative-mm -1.5 --failure-negative 3").succeeds();
+    add("0 --range-mm 5.73")
+        .says(&["added         ket8, 20 % infill at 0°: 5.73 mm\n", ": 1 line\n"]);
+    let one_end = "added         ket8, 20 % infill at 10°: at least 1.5 mm (-1.5)\n";
+    add("10 --negative-mm -1.5 --failure-negative 3").says(&[one_end, "bench.csv: 2 lines\n"]);
+    let both = add("15 --negative-mm -4.1 --positive-mm 5.2 --dry-run --json").json();
+    assert_eq!((&both["lines"], &both["added"]["positive_mm"]), (&3.into(), &5.2.into()));
     let before = folder.read("bench.csv");
     // What was typed is named, not the line that it would make.
     add("0 --range-mm 5.8").fails(2, &["error: --task: same finger as in line 2"]);

@@ -22,6 +22,10 @@ fn a_changed_task_needs_evaluations_of_its_own() {
     folder.study("s", 12, &own).succeeds();
     let journal = folder.journal("s");
     fs::write(&task, format!("# other\n{usb}")).expect("the file is written");
+    let differs =
+        "  input_sha256.task_1: the input file differs from its copy in the study's folder";
+    let refused = folder.study("s", 12, &own);
+    refused.fails(2, &["different settings", differs]);
     let accepted = [&own[..], &["--accept-changed"]].concat();
     let parts = ["simulated differently", "all its 12 evaluations", "raise --budget"];
     folder.study("s", 12, &accepted).fails(2, &parts);

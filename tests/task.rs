@@ -376,8 +376,8 @@ fn a_check_says_what_a_reader_finds() {
     let folder = Studies::new();
     for (from, to, key) in [
         ("mass_g = 5.0", "mass_g = 0.0", "plug.mass_g"),
-        ("mass_g = 5.0", "", "mass_g"),
-        ("force_n", "force", "force"),
+        ("mass_g = 5.0", "", "plug.mass_g"),
+        ("force_n", "force", "grip.force"),
     ] {
         let file = folder.file("bad.toml", USB.replace(from, to));
         let ran = said("task check --json", &[&file]);

@@ -68,6 +68,20 @@ fn where_nothing_inserts_it_is_said_with_what_stopped_the_plug() {
 }
 
 #[test]
+fn a_tuned_copy_is_named_after_its_file() {
+    let folder = Studies::new();
+    let (usb, out) = (folder.file("mine.toml", include_str!("../tasks/usb.toml")), "usb v2.toml");
+    let tuned = |out: &str| {
+        optimize(&["task", "tune", &usb, "--engine", "fake", "--out", &folder.word(out)])
+    };
+    tuned(out).succeeds();
+    assert_eq!(Task::parse(&folder.read(out), out).unwrap().name, "usb_v2");
+    std::fs::create_dir(folder.dir("sub")).unwrap();
+    tuned("sub/mine.toml").succeeds();
+    assert_eq!(Task::parse(&folder.read("sub/mine.toml"), "mine.toml").unwrap().name, "usb");
+}
+
+#[test]
 fn an_interrupt_leaves_what_was_tried_until_then() {
     let task = Task::parse(&off(), "own.toml").unwrap();
     let (robot, stop) = (robot("servo").unwrap(), AtomicBool::new(false));

@@ -8,7 +8,7 @@ use report::PostAnalysis;
 use report::answer::Answer;
 
 /// Runs the study to its end, shows its progress, and prints its answer before the analyses of the
-/// recommended finger.
+/// recommended finger; then follow the results of these, the next command and the folder.
 ///
 /// # Errors
 /// If a design cannot be simulated or a file cannot be written; if it is cancelled meanwhile.
@@ -30,5 +30,6 @@ pub fn run(open: OpenStudy, context: &Context<'_>, all: bool) -> Result<Output, 
     let value = summary(&ended, &answer, &found);
     let failure = failure.or_else(|| ended.unusable.take());
     // The answer is already printed.
-    Ok(Output { failure, ..Output::new(text::analyses(&found), value) })
+    let text = text::analyses(&found) + &text::next(&answer, &ended.dir);
+    Ok(Output { failure, ..Output::new(text, value) })
 }

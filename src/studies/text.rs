@@ -14,7 +14,7 @@ use study::{Ending, Recorded, StudyRecord};
 /// Returns the answer of a study that has ended as text; with `all`, every number on which it is based.
 pub fn ended(ended: &Ended, answer: &Answer, all: bool) -> String {
     let verbose = if all { verbose(answer, ended.ending, ended.cached) } else { String::new() };
-    answer_text(answer, &ended.dir, &verbose)
+    answer_text(answer, &verbose)
 }
 
 /// Returns the text of the analyses after a study.
@@ -26,17 +26,20 @@ pub fn analyses(PostAnalysis { levers, robots, .. }: &PostAnalysis) -> String {
     layout::wrapped(&layout::lines(least.chain(levers).chain(robots)))
 }
 
-/// Returns the text of the answer and the next command.
-fn answer_text(answer: &Answer, dir: &Path, verbose: &str) -> String {
+/// Returns the text of the answer.
+fn answer_text(answer: &Answer, verbose: &str) -> String {
     // First, since the following lines may recommend printing the finger.
     let mut text = layout::lines(lines::first(answer));
     text += &format!("{}\n{}\n", answer.headline(), expectation(answer));
     text += &layout::lines(lines::brief(answer));
-    text += verbose;
-    // Not wrapped, so that it can be copied.
+    layout::wrapped(&(text + verbose))
+}
+
+/// Returns the next command and the folder of the study as text; the command is not wrapped, so that it can be copied.
+pub fn next(answer: &Answer, dir: &Path) -> String {
     let (command, why) = command::next(answer, dir);
     let place = format!("study         {} (see {PAGE})\n", dir.display());
-    format!("{}next          {command}\n              # {why}\n{place}", layout::wrapped(&text))
+    format!("next          {command}\n              # {why}\n{place}")
 }
 
 /// Returns all numbers on which the answer is based.
@@ -99,7 +102,8 @@ mod tests {
         for task in ["ket8", "rj45", "usb"] {
             let dir = Path::new(env!("CARGO_MANIFEST_DIR")).join("results/reference").join(task);
             let record = StudyRecord::load(&dir).unwrap();
-            let lines = answer_text(&Answer::of(&record), &dir, "");
+            let answer = Answer::of(&record);
+            let lines = answer_text(&answer, "") + &next(&answer, &dir);
             let (lines, _) = lines.split_once("study   ").unwrap();
             let file = dir.join("summary.txt");
             if std::env::var_os("RENEW").is_some() {

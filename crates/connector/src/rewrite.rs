@@ -39,6 +39,17 @@ pub fn with_strategy(text: &str, after: &Strategy) -> Result<String, TomlError> 
     Ok(with_line_endings_of(text, file.to_string()))
 }
 
+/// Returns the text of a task file with another name.
+///
+/// # Errors
+/// If the text is not TOML.
+pub fn with_name(text: &str, name: &str) -> Result<String, TomlError> {
+    let mut file: DocumentMut = text.parse()?;
+    let new = Table::from_iter([("name", name)]);
+    update(file.as_table_mut(), &new);
+    Ok(with_line_endings_of(text, file.to_string()))
+}
+
 /// Returns a text with the byte order mark and the line endings of another, which `toml_edit` does not keep.
 fn with_line_endings_of(other: &str, text: String) -> String {
     let [crlf, lines] = ["\r\n", "\n"].map(|end| other.matches(end).count());
@@ -183,6 +194,15 @@ mod tests {
             &strategy(&comment("tilt_deg = 6.0")),
         );
         assert_eq!(written.unwrap(), comment("tilt_deg = 6.0 # a ; b; was 5.0"));
+    }
+
+    #[test]
+    fn a_new_name_keeps_all_other_lines() {
+        for file in TASKS {
+            let [old, new] = [file.name, "other"].map(|name| format!("name = \"{name}\""));
+            let expected = file.text.replacen(&old, &format!("{new} # was \"{}\"", file.name), 1);
+            assert_eq!(with_name(file.text, "other").unwrap(), expected);
+        }
     }
 
     #[test]

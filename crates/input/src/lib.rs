@@ -1,6 +1,7 @@
 //! Input files: reading up to a size limit, checks, errors and units. Internally, every quantity is in SI units; a
 //! quantity in another unit, such as mm, N/mm or degrees, has the unit in its name ([`units`]).
 
+mod faults;
 pub mod files;
 pub mod numbers;
 mod place;
@@ -8,9 +9,9 @@ pub mod shipped;
 pub mod units;
 pub mod wrong_unit;
 
+pub use faults::syntax;
 pub use place::{InputError, Place, Placed, RequestError};
 use serde::de::DeserializeOwned;
-use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue, ValueDeserializer};
@@ -22,39 +23,6 @@ const LARGEST: f64 = 1e9;
 /// Largest magnitude of a coordinate or a displacement, mm.
 const LONGEST_MM: f64 = 1000.0;
 
-/// Returns the error of a file with invalid TOML or an unexpected structure; `text` is that of the file, empty for a
-/// table without a text.
-pub fn syntax(file: &str, text: &str, error: &toml::de::Error) -> InputError {
-    let near = nearest_key(error.message(), &[]);
-    fault(file, text, error, near)
-}
-
-fn fault(file: &str, text: &str, error: &toml::de::Error, near: Option<&str>) -> InputError {
-    let before = error.span().and_then(|span| text.get(..span.start));
-    let line = before.map(|before| 1 + before.matches('\n').count());
-    let shown = error.to_string();
-    // Without a text, the message ends with the key.
-    let (problem, key) = match shown.trim_end().rsplit_once("\nin `") {
-        Some((problem, key)) => (problem, key.trim_end_matches('`')),
-        None => (shown.trim_end(), ""),
-    };
-    let place = Place { line, ..Place::file(file) }.key(key);
-    let hint = near.map_or(String::new(), |near| format!("; did you mean `{near}`?"));
-    place.fault(problem.to_owned() + &hint)
-}
-
-/// Returns the word nearest to the unknown word of a parser's message, of the accepted words and `more` words.
-fn nearest_key<'a>(message: &'a str, more: &[&'a str]) -> Option<&'a str> {
-    let mut words = message.strip_prefix("unknown ")?.split('`').skip(1).step_by(2);
-    let (given, accepted) = (words.next()?, words.chain(more.iter().copied()));
-    shipped::nearest(given, &accepted.collect::<Vec<_>>())
-}
-
-/// Returns the key that is missing according to an error of the parser.
-fn missing_key(error: &InputError) -> Option<&str> {
-    error.problem.rsplit_once("missing field `")?.1.strip_suffix('`')
-}
-
 /// Parsed TOML text from which typed values are read.
 #[derive(Debug, Clone)]
 pub struct Document<'a> {
@@ -64,9 +32,6 @@ pub struct Document<'a> {
     /// Keys of the file that were taken out of the tree.
     taken: &'a [&'a str],
 }
-
-/// Largest number of faults that are reported at once.
-const MAX_FAULTS: usize = 10;
 
 /// Number of parsed texts.
 static PARSED: AtomicU64 = AtomicU64::new(0);
@@ -109,7 +74,7 @@ impl<'a> Document<'a> {
     /// If the document does not have the structure of `T`, has a control character, or has a `name` that is empty or
     /// has several lines.
     pub fn read<T: DeserializeOwned>(&self) -> Result<T, InputError> {
-        let (value, table) = (self.deserialize(MAX_FAULTS)?, self.deserialize(1)?);
+        let (value, table) = (self.deserialize()?, self.deserialize()?);
         if let Some((key, problem)) = bad_text(&table) {
             return Check { file: self.file }.fail(&key, problem);
         }
@@ -119,54 +84,10 @@ impl<'a> Document<'a> {
         Ok(value)
     }
 
-    /// Deserializes the tree; the error lists up to `most` faults: the unknown keys, then the first other one.
-    fn deserialize<T: DeserializeOwned>(&self, most: usize) -> Result<T, InputError> {
+    fn deserialize<T: DeserializeOwned>(&self) -> Result<T, InputError> {
         let read = T::deserialize(ValueDeserializer::from(self.tree.clone()));
-        read.map_err(|mut error| {
-            error.set_input(Some(self.text));
-            let near = nearest_key(error.message(), self.taken);
-            let unknown = most > 1 && error.message().starts_with("unknown field `");
-            // Reads on as if the key had another name or were absent.
-            let rest = |name: Option<&str>, most: usize| {
-                let (at, mut rest) = (error.span().filter(|_| unknown)?, self.clone());
-                let replaced = replace_key(rest.tree.get_mut(), &at, name);
-                replaced.then(|| rest.deserialize::<T>(most).err())?
-            };
-            // If no key is similar, it may be the one that is missing.
-            let without = if near.is_none() { rest(None, 1) } else { None };
-            let missing = without.as_ref().and_then(missing_key);
-            let fits = |key: &&str| {
-                let named = || rest(Some(key), 1).map(|rest| rest.problem).unwrap_or_default();
-                error.message().contains(&format!("`{key}`")) && !named().contains("invalid type")
-            };
-            let missing = missing.filter(fits);
-            let near = near.or(missing);
-            let mut found = fault(self.file, self.text, &error, near);
-            if let Some(rest) = rest(near.filter(|near| !self.taken.contains(near)), most - 1) {
-                found.problem += &format!("\n{}", rest.problem);
-            }
-            found
-        })
+        read.map_err(|error| self.clone().faults::<T>(error))
     }
-}
-
-/// Renames the key at these bytes of the text; removes it if there is no `new` name or the name is taken. Returns
-/// whether the key was found.
-fn replace_key(value: &mut DeValue<'_>, at: &Range<usize>, new: Option<&str>) -> bool {
-    let table = match value {
-        DeValue::Table(table) => table,
-        DeValue::Array(items) => {
-            return items.iter_mut().any(|item| replace_key(item.get_mut(), at, new));
-        }
-        _ => return false,
-    };
-    let Some(key) = table.keys().find(|key| key.span() == *at).cloned() else {
-        return table.iter_mut().any(|(_, value)| replace_key(value.get_mut(), at, new));
-    };
-    if let (Some(value), Some(new)) = (table.remove(&key), new) {
-        table.entry(Spanned::new(at.clone(), new.to_owned().into())).or_insert(value);
-    }
-    true
 }
 
 /// Reads TOML; `file` is named in errors.
@@ -376,10 +297,10 @@ mod tests {
         let text =
             "nam = \"a\"\nother = 1\n[[friction]]\nplug_socket = 1\n[[friction]]\nplug_sockt = 1";
         let error = read::<Pair>(text, "task.toml").unwrap_err();
-        assert_eq!(error.place().line, Some(6));
+        assert_eq!(error.place().line, Some(1));
         let text = error.to_string();
         let found: Vec<_> = text.lines().filter(|line| line.contains('`')).collect();
-        let expected = ["`plug_sockt`", "`nam`", "`other`", "`height_mm`"];
+        let expected = ["`nam`", "`other`", "`friction.plug_sockt`", "`height_mm`"];
         let begin = |(line, key): (&&str, &str)| {
             line.split(" field ").nth(1).is_some_and(|of| of.starts_with(key))
         };
@@ -395,10 +316,51 @@ mod tests {
         assert!(text.contains("missing field `mass_g`") && !text.contains("mean"), "{text}");
         let many: String = (0..20).map(|i| format!("other_{i} = 1\n")).collect();
         let text = read::<Pair>(&many, "t.toml").unwrap_err().to_string();
-        assert_eq!(text.matches("unknown field").count(), MAX_FAULTS);
+        assert_eq!(text.matches("unknown field").count(), faults::MAX_FAULTS);
         let document = Document::parse("kind = 1\nknd = 2\nplug_socket = 1", "t.toml").unwrap();
         let error = document.without(&["kind"]).read::<Friction>().unwrap_err().to_string();
         assert!(error.ends_with("did you mean `kind`?"), "{error}");
+    }
+
+    #[test]
+    fn all_missing_keys_are_listed_and_values_of_a_wrong_type_or_word_do_not_hide_them() {
+        #[derive(Debug, serde::Deserialize)]
+        #[serde(rename_all = "lowercase")]
+        enum Shape {
+            Box,
+        }
+        #[derive(Debug, serde::Deserialize)]
+        #[serde(deny_unknown_fields)]
+        #[expect(dead_code, reason = "only the names are read")]
+        struct Part {
+            shape: Shape,
+            x_mm: [f64; 2],
+            mass_g: f64,
+            axis: String,
+        }
+        #[derive(Debug, serde::Deserialize)]
+        #[expect(dead_code, reason = "only the names are read")]
+        struct Plug {
+            part: Vec<Part>,
+            height_mm: f64,
+        }
+        let text = "[[part]]\nx_mm = 3\n[[part]]\nshape = \"bx\"\nmass_g = [2]";
+        let text = read::<Plug>(text, "t.toml").unwrap_err().to_string();
+        let faults =
+            text.lines().filter(|line| !line.contains(['|', '[']) && !line.contains("TOML"));
+        let faults: Vec<_> = faults.collect();
+        let expected = [
+            "invalid type: integer `3`, expected an array of length 2",
+            "unknown variant `bx`, expected `box`; did you mean `box`?",
+            "invalid type: sequence, expected f64",
+            "missing field `part.shape`",
+            "missing field `part.mass_g`",
+            "missing field `part.axis`",
+            "missing field `height_mm`",
+            "missing field `part.x_mm`",
+            "missing field `part.axis`",
+        ];
+        assert_eq!(faults, expected, "{text}");
     }
 
     #[test]

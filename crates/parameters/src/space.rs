@@ -27,7 +27,8 @@ pub struct Variable {
     /// Spacing of the values.
     #[serde(default, skip_serializing_if = "is_linear")]
     pub scale: Scale,
-    /// Source of the bounds.
+    /// Source of the bounds; may be empty.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
     pub source: String,
 }
 
@@ -319,6 +320,26 @@ source = "paper"
             let error = Space::parse(&GOOD.replace(DENSITY_KEY, key), "s.toml").unwrap_err();
             assert!(error.to_string().contains(words), "{error}");
         }
+    }
+
+    #[test]
+    fn all_faults_are_reported_at_once_and_a_source_is_not_needed() {
+        let plain = GOOD.replace("source = \"paper\"\n", "");
+        let space = Space::parse(&plain, "s.toml").unwrap();
+        assert_eq!(toml::from_str::<Space>(&toml::to_string(&space).unwrap()).unwrap(), space);
+        let text = "name = \"s\"\n[[parameter]]\nlow = 10.0\n[[parameter]]\n\
+                    key = \"task.friction.plug_sokcet\"\nhigh = 1.0";
+        let error = Space::parse(text, "s.toml").unwrap_err().to_string();
+        let missing = ["description", "parameter.key", "parameter.high", "parameter.low"];
+        for key in missing {
+            assert_eq!(error.matches(&format!("missing field `{key}`")).count(), 1, "{error}");
+        }
+        assert_eq!(error.matches("missing field `parameter.step`").count(), 2, "{error}");
+        assert_eq!(
+            error.matches("did you mean `task.friction.plug_socket`?").count(),
+            1,
+            "{error}"
+        );
     }
 
     proptest! {

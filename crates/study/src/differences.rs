@@ -12,7 +12,13 @@ pub(super) fn differences<T: Serialize>(ours: &T, theirs: &T, who: [&str; 2]) ->
         .into_iter()
         .filter(|key| ours.get(*key) != theirs.get(*key))
         .map(|key| {
-            let [a, b] = [&ours, &theirs].map(|of| of.get(key).map_or("nothing", String::as_str));
+            let [a, b] = [&ours, &theirs].map(|of| of.get(key).map(String::as_str));
+            if key.starts_with("input_sha256.") && a.is_some() && b.is_some() {
+                return format!(
+                    "  {key}: the input file differs from its copy in the study's folder"
+                );
+            }
+            let [a, b] = [a, b].map(|of| of.unwrap_or("nothing"));
             format!("  {key}: {} has {a}, {} has {b}", who[0], who[1])
         })
         .collect();

@@ -11,9 +11,11 @@ use input::InputError;
 use input::files::{LARGEST_INPUT, LockedFile};
 use input::shipped::{COMMERCIAL, MEASUREMENTS, TASKS};
 use insertion::{DENSITY_KEY, DIRECTION_KEY};
-use serde_json::json;
+use report::answer::words;
+use serde::Serialize;
 use std::io::{self, BufRead};
 use std::path::Path;
+use study::check_folder;
 
 /// Add a line to a measurement file, which is created if needed; without options it prompts for each value
 #[derive(Debug, clap::Args)]
@@ -95,10 +97,35 @@ impl command::Request for Request {
         if cells.is_empty() {
             cells = prompt(&mut io::stdin().lock())?;
         }
-        let lines = add(file, cells, self.dry_run)?.len();
-        let text = format!("{file}: {}\n", input::counted(lines, "line"));
-        Ok(Output::new(text, json!({"file": file, "lines": lines})))
+        let found = add(file, cells, self.dry_run)?;
+        let (lines, added) = (found.len(), found.last());
+        let word = if self.dry_run { "valid" } else { "added" };
+        let mut text =
+            added.map_or(String::new(), |line| format!("{word}         {}\n", shown(line)));
+        text += &format!("file          {file}: {}\n", input::counted(lines, "line"));
+        Ok(Output::new(text, Added { file, lines, added }))
     }
+}
+
+/// Result: the file, its number of lines, and the new one.
+#[derive(Serialize)]
+struct Added<'a> {
+    file: &'a str,
+    lines: usize,
+    added: Option<&'a Experiment>,
+}
+
+/// Returns task, finger, range and ends of a line as text: `usb, 10 % infill at 6°: 9.3 mm (-4.1 to +5.2)`.
+fn shown(line: &Experiment) -> String {
+    let range = match line.extent() {
+        Some((mm, true)) => format!("at least {} mm", input::shown(mm)),
+        Some((mm, false)) => format!("{} mm", input::shown(mm)),
+        None => NOT_MEASURABLE.to_owned(),
+    };
+    let ends = [line.negative_mm, line.positive_mm].into_iter().flatten();
+    let ends: Vec<String> = ends.map(|mm| format!("{mm:+}")).collect();
+    let ends = if ends.is_empty() { String::new() } else { format!(" ({})", ends.join(" to ")) };
+    format!("{}, {}: {range}{ends}", line.task, words::design(&line.design))
 }
 
 /// Adds a line with these cells, or with `dry_run` only checks it, and returns all lines.
@@ -122,6 +149,7 @@ fn add(
     // Read last, since others may have added lines meanwhile.
     let unusable = |error| Failure::in_file(file, format!("cannot add a line: {error}"));
     let unwritable = |error| Failure::running(format!("{file}: cannot write: {error}"));
+    check_folder(Path::new(file))?;
     let mut table = LockedFile::open(Path::new(file), LARGEST_INPUT).map_err(unusable)?;
     parse(table.text(), file).map_err(Failure::input)?;
     let new =

@@ -12,10 +12,11 @@ use input::Place;
 use input::shipped::Source;
 use input::units::{DEG, MM, N_PER_MM};
 use insertion::evaluation::INDIFFERENCE_MM;
-use insertion::task::Limits;
 use insertion::task::parts_file::without_parts;
+use insertion::task::{Limits, is_of_name};
 use insertion::{Finger, Robot, Strategy, Task, Window};
 use serde_json::{Value, json};
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 use study::write_file;
@@ -146,12 +147,26 @@ impl Request {
         robot: &Robot,
         (target, stop): (Option<&Path>, &AtomicBool),
     ) -> Result<Candidate, Failure> {
-        let after = rewritten(file, tuned)?;
+        let after = self.rewritten(file, tuned)?;
         let found = self.tuner(&after.task, robot, stop).given(&after.task.strategy);
         not_stopped(stop)?;
         let found = found.map_err(Failure::input)?;
         self.save(file, &after, target)?;
         Ok(found)
+    }
+
+    /// Returns the task file with the recommended strategy; a file of another name gives the task that name, so that
+    /// the studies of both have different folders.
+    fn rewritten(&self, file: &TaskFile, tuned: &Tuned) -> Result<TaskFile, Failure> {
+        let (source, strategy) = (&file.source, &tuned.best().tried.strategy);
+        let mut text = rewrite::with_strategy(&source.text, strategy).map_err(Failure::input)?;
+        let stem = self.out.as_deref().and_then(Path::file_stem);
+        let renamed = stem.filter(|stem| Path::new(&source.file).file_stem() != Some(*stem));
+        if let Some(name) = renamed.and_then(OsStr::to_str) {
+            let name = name.replace(|c| !is_of_name(c), "_");
+            text = rewrite::with_name(&text, &name).map_err(Failure::input)?;
+        }
+        TaskFile::parse(Source { file: source.file.clone(), text })
     }
 
     /// Writes the drawing and, unless it is a dry run, the task.
@@ -186,7 +201,7 @@ impl Request {
             let hint = format!("no better strategy was found yet; {} is unchanged", self.file);
             return Ok(Failure::Interrupted(Some(hint)));
         };
-        self.save(file, &rewritten(file, tuned)?, Some(target))?;
+        self.save(file, &self.rewritten(file, tuned)?, Some(target))?;
         let (best, target) = (outcome(tuned.best()), target.display());
         let command = self.robot.command("task tune", &target);
         let hint = format!(
@@ -194,13 +209,6 @@ impl Request {
         );
         Ok(Failure::Interrupted(Some(hint)))
     }
-}
-
-/// Returns the task file with the recommended strategy.
-fn rewritten(file: &TaskFile, tuned: &Tuned) -> Result<TaskFile, Failure> {
-    let (source, strategy) = (&file.source, &tuned.best().tried.strategy);
-    let text = rewrite::with_strategy(&source.text, strategy).map_err(Failure::input)?;
-    TaskFile::parse(Source { file: source.file.clone(), text })
 }
 
 /// Returns a strategy with the windows of the fingers, simulated when it was tried, as JSON.

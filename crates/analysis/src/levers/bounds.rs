@@ -43,6 +43,7 @@ pub fn lever_parameters(
         let value = current_value(analysis, scenario, &parameter.path)?;
         if let Some(of) = analysis.space.parameters.iter().find(|of| of.key == parameter.path) {
             let source = format!("the space `{}`: {}", analysis.space.name, of.source);
+            let source = source.trim_end_matches(": ").to_owned();
             let (low, high) = (of.low, of.high);
             parameter = Parameter { transform: Transform::Value, low, high, source, ..parameter };
         }

@@ -94,7 +94,7 @@ def import_parts(
     *,
     assembly: StrPath | None = None,
     out: StrPath | None = None,
-    unit: Literal["mm", "in", "m"] | None = None,
+    unit: Literal["mm", "cm", "in", "m"] | None = None,
     insert_along: Along | None = None,
     pose: int | None = None,
     jaws: Literal["x", "y", "z"] | None = None,

@@ -275,10 +275,11 @@ pub fn unit(
     given: Option<Unit>,
 ) -> Result<(Unit, Option<String>), Failure> {
     let longest = triangles.map(|of| longest_side(of.as_flattened()));
-    let units = given.map_or(vec![Unit::Mm, Unit::M, Unit::In], |unit| vec![unit]);
+    let units = given.map_or(vec![Unit::Mm, Unit::M, Unit::In, Unit::Cm], |unit| vec![unit]);
     let fits = |side: f64, unit: Unit| (SIZES[0]..=SIZES[1]).contains(&(side * unit.metres()));
-    let common = units.iter().find(|unit| longest.iter().all(|side| fits(*side, **unit)));
-    let Some(unit) = common.copied() else {
+    let both = |unit: &Unit| longest.iter().all(|side| fits(*side, *unit));
+    let plausible: Vec<Unit> = units.iter().copied().filter(both).collect();
+    let Some(&unit) = plausible.first() else {
         let [plug, socket] = longest;
         let own = longest.map(|side| units.iter().copied().find(|unit| fits(side, *unit)));
         let (at, problem) = match own.map(|unit| unit.map(value)) {
@@ -290,7 +291,7 @@ pub fn unit(
             ),
             [plug, _] => {
                 let at = usize::from(plug.is_some());
-                let read = given.map_or("mm, m or in".to_owned(), value);
+                let read = given.map_or("mm, cm, m or in".to_owned(), value);
                 let [least, most] = SIZES.map(|side| side / MM);
                 let is = format!("the {} is {:.4} {read} long", BODIES[at], longest[at]);
                 (at, format!("{is}; connectors are {least:.0} to {most:.0} mm long (--unit)"))
@@ -301,8 +302,15 @@ pub fn unit(
     if given.is_some() {
         return Ok((unit, None));
     }
-    let [plug, socket] = longest.map(|side| side * unit.metres() / MM);
-    let why = format!("{}: plug and socket are {plug:.1} and {socket:.1} mm long", value(unit));
+    let sizes = |unit: Unit| longest.map(|side| side * unit.metres() / MM);
+    let [plug, socket] = sizes(unit);
+    let guessed = if unit == Unit::Mm { "" } else { ", guessed from the size (--unit)" };
+    let name = value(unit);
+    let mut why = format!("{name}{guessed}: plug and socket are {plug:.1} and {socket:.1} mm long");
+    for other in plausible.into_iter().skip(1).filter(|_| unit != Unit::Mm) {
+        let [plug, socket] = sizes(other);
+        why += &format!("; in {}, {plug:.1} and {socket:.1} mm", value(other));
+    }
     Ok((unit, Some(why)))
 }
 
@@ -332,4 +340,20 @@ fn oriented(
         triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
     }
     (triangles, inward)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_guessed_unit_is_named_with_the_other_plausible_ones() {
+        let long =
+            |x: f64| [[Point3::origin(), Point3::new(x, 0.0, 0.0), Point3::new(0.0, 1.0, 0.0)]];
+        let (plug, socket) = (long(2.8), long(2.4));
+        let found = |given| unit(["p", "s"], [&plug, &socket], given).unwrap();
+        let why = "in, guessed from the size (--unit): plug and socket are 71.1 and 61.0 mm long; in cm, 28.0 and 24.0 mm";
+        assert_eq!(found(None), (Unit::In, Some(why.to_owned())));
+        assert_eq!(found(Some(Unit::Cm)), (Unit::Cm, None));
+    }
 }

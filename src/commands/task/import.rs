@@ -120,7 +120,7 @@ impl Request {
         let [plug, socket] = self.names();
         let [unit, along, jaws] = [value(*unit), value(*along), value(*jaws)];
         let head = format!(
-            "Imported from {plug} and {socket}, in {unit}, inserted along {along}, jaws along {jaws}."
+            "Imported from {plug} and {socket}, unit `{unit}`, inserted along {along}, jaws along {jaws}."
         );
         let held = made.task.plug.parts.last().map_or("", |part| &part.name);
         let held = format!(

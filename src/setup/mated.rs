@@ -10,6 +10,7 @@ use connector::mesh::axes::{InsertionAxis, JawAxis, Unit, value};
 use connector::mesh::mated::{GAP, HANDLE, Interference, Pair, PairTask, TOLERANCE, task};
 use connector::mesh::{self, Files, SIZES, Surface, Triangle, reduced};
 use connector::plan::Family;
+use connector::seat::{RotationalPlay, rotational_play};
 use connector::write::origin;
 use input::counted;
 use input::units::MM;
@@ -40,6 +41,8 @@ pub struct MatedTask {
     pub along: InsertionAxis,
     /// Axis of the socket's file along which the jaws close.
     pub jaws: JawAxis,
+    /// Play in rotation; `None` if the plug turns freely.
+    pub turn: Option<RotationalPlay>,
     /// Whether the normals of plug and of socket pointed inward.
     pub inward: [bool; 2],
     /// Findings: the subject and a sentence.
@@ -109,14 +112,7 @@ pub fn mated(
         play: [0, 1].map(|i| (across[i], mate.play_m[i])),
     };
     let mut made = task(&pair, &request.name(), like, request.body);
-    if made.swapped {
-        let [plug, socket] = files;
-        let problem = format!(
-            "the fingers find no faces to hold on the plug, which encloses the socket, but they do on the socket, {socket}: are \
-             plug and socket swapped? otherwise add a handle with --body"
-        );
-        return Err(Failure::in_file(plug, problem));
-    }
+    check_held(files, &made, request)?;
     let seat = (!mate.through && depth > mate.depth_m() + TOLERANCE).then_some(mate.depth_m());
     check_drawing(files, &made, seat, &request.out().with_extension("place.svg"))?;
     findings.extend(described(&mate, [long, depth], &made, request.body));
@@ -129,7 +125,34 @@ pub fn mated(
         (made.task.strategy, strategy) = like;
     }
     let inward = [plug_inward, socket_inward];
-    Ok(MatedTask { made, strategy, unit, poses, along, jaws, inward, findings })
+    let turn = rotational_play(&made.task);
+    Ok(MatedTask { made, strategy, unit, poses, along, jaws, turn, inward, findings })
+}
+
+/// Checks that the fingers hold a plug that is not the socket, and hold it along the requested axis.
+///
+/// # Errors
+/// If they do not, with the reason.
+fn check_held(files: Files, made: &PairTask, request: &PairRequest) -> Result<(), Failure> {
+    if made.swapped {
+        let [plug, socket] = files;
+        let problem = format!(
+            "the fingers find no faces to hold on the plug, which encloses the socket, but they do on the socket, {socket}: are \
+             plug and socket swapped? otherwise add a handle with --body"
+        );
+        return Err(Failure::in_file(plug, problem));
+    }
+    let (Some(jaws), None, true) = (request.jaws, request.body, made.handle) else { return Ok(()) };
+    let problem = match made.rejected {
+        Some(faces) => {
+            format!("the plug's faces {:.1} mm apart: {}", faces.apart / MM, faces.reason)
+        }
+        None => "the plug has no two opposite faces above the socket".to_owned(),
+    };
+    let jaws = value(jaws);
+    Err(Failure::usage(format!(
+        "--jaws {jaws}: {problem}; give another axis, or add a handle with --body"
+    )))
 }
 
 /// Checks that the convex parts match the drawing; `seat` is the depth at which the plug stops, m, if it is to go deeper.
@@ -207,7 +230,8 @@ fn described(
         true => format!("{depth:.2} mm of the plug's {long:.2} mm engage"),
         false => format!("the plug of {long:.2} mm goes {depth:.2} mm along a post"),
     };
-    let mut findings = vec![("mate", format!("{engaged}; z = 0 is {}", origin(made.top)))];
+    let mut findings =
+        vec![("mate", format!("{engaged}; the task's z = 0 is {}", origin(made.top)))];
     if mate.through {
         findings
             .push(("through", format!("nothing stops the plug: {needed:.2} mm must be reached")));
@@ -244,7 +268,7 @@ fn described(
         let rounded = |p: Point3<f64>| [p.x, p.y, p.z].map(|v| (v / MM * 100.0).round() / 100.0);
         let [from, to] = left.bounds.map(rounded);
         let why = format!(
-            "{} of the {}, up to {:.3} mm, from {from:?} to {to:?} mm: {}",
+            "{} of the {}, up to {:.3} mm, from {from:?} to {to:?} mm of the task: {}",
             counted(left.parts, "part"),
             BODIES[left.body],
             left.depth / MM,

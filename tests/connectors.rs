@@ -304,6 +304,49 @@ fn inserts(
     found
 }
 
+/// A body of 9 x 14 mm, drawn in cm, whose wider faces reach beyond the pads.
+#[test]
+fn unit_and_axis_of_the_jaws_are_as_requested() {
+    let folder = Studies::new();
+    let body = block([-4.5, 4.5], [-7.0, 7.0], [8.0, 28.0]);
+    let plug = [block([-3.0, 3.0], [-2.0, 2.0], [0.0, 8.0]), body];
+    let mut socket = frame([24.0, 24.0], [6.2, 4.2], [-8.0, 0.0]);
+    socket.push(block([-12.0, 12.0], [-12.0, 12.0], [-10.0, -8.0]));
+    let in_cm = |of: &[Block]| of.iter().map(|of| of.map(|p| p.map(|mm| mm / 10.0))).collect();
+    let [plug, socket] = [("plug.stl", &plug[..]), ("socket.stl", &socket)].map(|(name, of)| {
+        let scaled: Vec<Block> = in_cm(of);
+        folder.file(name, stl(&scaled, [0, 1, 2]))
+    });
+    let import = |out: &str, more: &[&str]| {
+        let words = ["task", "import", "--plug", &plug, "--socket", &socket, "--out"];
+        optimize(&[&words[..], &[&folder.word(out)], more].concat())
+    };
+    for (jaws, apart) in [("x", 9.0), ("y", 14.0)] {
+        let given = ["--unit", "cm", "--jaws", jaws, "--json"];
+        let found = import(&format!("{jaws}.toml"), &given).json();
+        assert_eq!((&found["unit"], &found["jaws"]), (&"cm".into(), &jaws.into()), "{found}");
+        assert!((found["body_mm"][0].as_f64().unwrap() - apart).abs() < 0.01, "{found}");
+    }
+    let guessed = import("guessed.toml", &[]).stdout;
+    assert!(guessed.starts_with("unit          in, guessed from the size (--unit)"), "{guessed}");
+    assert!(folder.read("guessed.toml").contains("unit `in`, inserted along -z"));
+    import("inch.toml", &["--unit", "inch"]).fails(2, &["possible values: mm, cm, in, m", "'in'"]);
+}
+
+/// The boot is in the way across the first axis.
+#[test]
+fn a_requested_axis_that_cannot_be_held_is_refused() {
+    let folder = Studies::new();
+    let [plug, socket] = shell();
+    let plug = folder.file("plug.stl", stl(&plug, [1, 2, 0]));
+    let socket = folder.file("socket.stl", stl(&socket, [0, 1, 2]));
+    let out = folder.word("x.toml");
+    let words = ["task", "import", "--plug", &plug, "--socket", &socket, "--jaws", "x"];
+    let low = "--jaws x: the plug's faces 6.0 mm apart: the pads, with their roofs on top,";
+    optimize(&[&words[..], &["--out", &out]].concat()).fails(2, &[low, "--body"]);
+    assert!(!folder.dir("x.toml").exists());
+}
+
 #[test]
 fn a_shell_with_nine_pins_goes_about_their_block() {
     inserts(&Studies::new(), "d-sub", d_sub(), [0.2, 0.2]);

@@ -69,6 +69,10 @@ class Imported(Result):
     clearance_mm: float
     clearance_x_mm: float
     clearance_y_mm: float
+    #: Play in rotation about the axis of insertion, and its arc at the inserted corner farthest from it, such as that
+    #: of a key; None if the plug turns freely.
+    clearance_about_z_deg: float | None
+    clearance_about_z_mm: float | None
     #: Size of the body that the fingers hold, mm: width between the jaws, height, length.
     body_mm: tuple[float, float, float]
     #: Whether the faces of a mesh pointed inward and were flipped.
@@ -94,7 +98,7 @@ def import_parts(
     *,
     assembly: StrPath | None = None,
     out: StrPath | None = None,
-    unit: Literal["mm", "in", "m"] | None = None,
+    unit: Literal["mm", "cm", "in", "m"] | None = None,
     insert_along: Along | None = None,
     pose: int | None = None,
     jaws: Literal["x", "y", "z"] | None = None,

@@ -10,6 +10,7 @@ use connector::mesh::axes::{InsertionAxis, JawAxis, Unit, value};
 use connector::mesh::mated::{GAP, HANDLE, Interference, Pair, PairTask, TOLERANCE, task};
 use connector::mesh::{self, Files, SIZES, Surface, Triangle, reduced};
 use connector::plan::Family;
+use connector::seat::{RotationalPlay, rotational_play};
 use connector::write::origin;
 use input::counted;
 use input::units::MM;
@@ -40,6 +41,8 @@ pub struct MatedTask {
     pub along: InsertionAxis,
     /// Axis of the socket's file along which the jaws close.
     pub jaws: JawAxis,
+    /// Play in rotation; `None` if the plug turns freely.
+    pub turn: Option<RotationalPlay>,
     /// Whether the normals of plug and of socket pointed inward.
     pub inward: [bool; 2],
     /// Findings: the subject and a sentence.
@@ -109,14 +112,7 @@ pub fn mated(
         play: [0, 1].map(|i| (across[i], mate.play_m[i])),
     };
     let mut made = task(&pair, &request.name(), like, request.body);
-    if made.swapped {
-        let [plug, socket] = files;
-        let problem = format!(
-            "the fingers find no faces to hold on the plug, which encloses the socket, but they do on the socket, {socket}: are \
-             plug and socket swapped? otherwise add a handle with --body"
-        );
-        return Err(Failure::in_file(plug, problem));
-    }
+    check_held(files, &made, request)?;
     let seat = (!mate.through && depth > mate.depth_m() + TOLERANCE).then_some(mate.depth_m());
     check_drawing(files, &made, seat, &request.out().with_extension("place.svg"))?;
     findings.extend(described(&mate, [long, depth], &made, request.body));
@@ -129,7 +125,34 @@ pub fn mated(
         (made.task.strategy, strategy) = like;
     }
     let inward = [plug_inward, socket_inward];
-    Ok(MatedTask { made, strategy, unit, poses, along, jaws, inward, findings })
+    let turn = rotational_play(&made.task);
+    Ok(MatedTask { made, strategy, unit, poses, along, jaws, turn, inward, findings })
+}
+
+/// Checks that the fingers hold a plug that is not the socket, and hold it along the requested axis.
+///
+/// # Errors
+/// If they do not, with the reason.
+fn check_held(files: Files, made: &PairTask, request: &PairRequest) -> Result<(), Failure> {
+    if made.swapped {
+        let [plug, socket] = files;
+        let problem = format!(
+            "the fingers find no faces to hold on the plug, which encloses the socket, but they do on the socket, {socket}: are \
+             plug and socket swapped? otherwise add a handle with --body"
+        );
+        return Err(Failure::in_file(plug, problem));
+    }
+    let (Some(jaws), None, true) = (request.jaws, request.body, made.handle) else { return Ok(()) };
+    let problem = match made.rejected {
+        Some(faces) => {
+            format!("the plug's faces {:.1} mm apart: {}", faces.apart / MM, faces.reason)
+        }
+        None => "the plug has no two opposite faces above the socket".to_owned(),
+    };
+    let jaws = value(jaws);
+    Err(Failure::usage(format!(
+        "--jaws {jaws}: {problem}; give another axis, or add a handle with --body"
+    )))
 }
 
 /// Checks that the convex parts match the drawing; `seat` is the depth at which the plug stops, m, if it is to go deeper.
@@ -207,7 +230,8 @@ fn described(
         true => format!("{depth:.2} mm of the plug's {long:.2} mm engage"),
         false => format!("the plug of {long:.2} mm goes {depth:.2} mm along a post"),
     };
-    let mut findings = vec![("mate", format!("{engaged}; z = 0 is {}", origin(made.top)))];
+    let mut findings =
+        vec![("mate", format!("{engaged}; the task's z = 0 is {}", origin(made.top)))];
     if mate.through {
         findings
             .push(("through", format!("nothing stops the plug: {needed:.2} mm must be reached")));
@@ -244,7 +268,7 @@ fn described(
         let rounded = |p: Point3<f64>| [p.x, p.y, p.z].map(|v| (v / MM * 100.0).round() / 100.0);
         let [from, to] = left.bounds.map(rounded);
         let why = format!(
-            "{} of the {}, up to {:.3} mm, from {from:?} to {to:?} mm: {}",
+            "{} of the {}, up to {:.3} mm, from {from:?} to {to:?} mm of the task: {}",
             counted(left.parts, "part"),
             BODIES[left.body],
             left.depth / MM,
@@ -275,10 +299,11 @@ pub fn unit(
     given: Option<Unit>,
 ) -> Result<(Unit, Option<String>), Failure> {
     let longest = triangles.map(|of| longest_side(of.as_flattened()));
-    let units = given.map_or(vec![Unit::Mm, Unit::M, Unit::In], |unit| vec![unit]);
+    let units = given.map_or(vec![Unit::Mm, Unit::M, Unit::In, Unit::Cm], |unit| vec![unit]);
     let fits = |side: f64, unit: Unit| (SIZES[0]..=SIZES[1]).contains(&(side * unit.metres()));
-    let common = units.iter().find(|unit| longest.iter().all(|side| fits(*side, **unit)));
-    let Some(unit) = common.copied() else {
+    let both = |unit: &Unit| longest.iter().all(|side| fits(*side, *unit));
+    let plausible: Vec<Unit> = units.iter().copied().filter(both).collect();
+    let Some(&unit) = plausible.first() else {
         let [plug, socket] = longest;
         let own = longest.map(|side| units.iter().copied().find(|unit| fits(side, *unit)));
         let (at, problem) = match own.map(|unit| unit.map(value)) {
@@ -290,7 +315,7 @@ pub fn unit(
             ),
             [plug, _] => {
                 let at = usize::from(plug.is_some());
-                let read = given.map_or("mm, m or in".to_owned(), value);
+                let read = given.map_or("mm, cm, m or in".to_owned(), value);
                 let [least, most] = SIZES.map(|side| side / MM);
                 let is = format!("the {} is {:.4} {read} long", BODIES[at], longest[at]);
                 (at, format!("{is}; connectors are {least:.0} to {most:.0} mm long (--unit)"))
@@ -301,8 +326,15 @@ pub fn unit(
     if given.is_some() {
         return Ok((unit, None));
     }
-    let [plug, socket] = longest.map(|side| side * unit.metres() / MM);
-    let why = format!("{}: plug and socket are {plug:.1} and {socket:.1} mm long", value(unit));
+    let sizes = |unit: Unit| longest.map(|side| side * unit.metres() / MM);
+    let [plug, socket] = sizes(unit);
+    let guessed = if unit == Unit::Mm { "" } else { ", guessed from the size (--unit)" };
+    let name = value(unit);
+    let mut why = format!("{name}{guessed}: plug and socket are {plug:.1} and {socket:.1} mm long");
+    for other in plausible.into_iter().skip(1).filter(|_| unit != Unit::Mm) {
+        let [plug, socket] = sizes(other);
+        why += &format!("; in {}, {plug:.1} and {socket:.1} mm", value(other));
+    }
     Ok((unit, Some(why)))
 }
 
@@ -332,4 +364,20 @@ fn oriented(
         triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
     }
     (triangles, inward)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_guessed_unit_is_named_with_the_other_plausible_ones() {
+        let long =
+            |x: f64| [[Point3::origin(), Point3::new(x, 0.0, 0.0), Point3::new(0.0, 1.0, 0.0)]];
+        let (plug, socket) = (long(2.8), long(2.4));
+        let found = |given| unit(["p", "s"], [&plug, &socket], given).unwrap();
+        let why = "in, guessed from the size (--unit): plug and socket are 71.1 and 61.0 mm long; in cm, 28.0 and 24.0 mm";
+        assert_eq!(found(None), (Unit::In, Some(why.to_owned())));
+        assert_eq!(found(Some(Unit::Cm)), (Unit::Cm, None));
+    }
 }

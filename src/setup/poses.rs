@@ -38,7 +38,7 @@ impl MatedPose {
         let MatedPose { insert_along, depth_mm, turn_deg, origin_mm: [x, y, z] } = self;
         format!(
             "along {insert_along}, {depth_mm:.2} mm deep, turned by {turn_deg:.0}°, the plug's origin at \
-             [{x:.2}, {y:.2}, {z:.2}] mm"
+             [{x:.2}, {y:.2}, {z:.2}] mm of the socket's file"
         )
     }
 }

@@ -348,6 +348,7 @@ impl Hole {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::seat::rotational_play;
     use input::units::DEG;
 
     #[test]
@@ -402,6 +403,12 @@ mod tests {
         let task = draft("keyed", &size([wide, high]), None).unwrap();
         assert!(task.plug.parts.iter().any(|part| part.name == "key"));
         assert!(crate::check::problems(&task).is_empty(), "{:?}", crate::check::problems(&task));
+        // Its corner, 5.1 mm from the axis, is free by the clearance.
+        let play = rotational_play(&task).unwrap();
+        assert!((play.arc / MM - 0.102).abs() < 0.006, "{play:?}");
+        assert!((play.angle / play.arc * 5.099 * MM - 1.0).abs() < 1e-3, "{play:?}");
+        let round = Dimensions { key: None, ..size([wide, high]) };
+        assert_eq!(rotational_play(&draft("round", &round, None).unwrap()), None);
         assert!(draft("keyed", &size([8.0 * MM, high]), None).is_err());
     }
 

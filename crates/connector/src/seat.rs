@@ -3,7 +3,7 @@
 
 use super::body::{ConvexBody, clipped, extent};
 use contact::scene::Pose;
-use input::units::MM;
+use input::units::{DEG, MM};
 use insertion::task::Mated;
 use insertion::{Ending, Part, Stage, Task};
 use nalgebra::{Point3, UnitQuaternion, Vector3};
@@ -20,6 +20,10 @@ const ASIDE: f64 = 0.2 * MM;
 const TOUCHING: f64 = 1e-3 * MM;
 /// Largest lateral play that is measured, m.
 const MAX_PLAY: f64 = 10.0 * MM;
+/// Rotation to either side up to which the play about the axis is measured, rad.
+const MAX_TURN: f64 = 45.0 * DEG;
+/// Resolution of this play, rad.
+const TURN_RESOLUTION: f64 = 0.01 * DEG;
 /// Intervals of the grid of places along x and along y.
 const GRID: i32 = 8;
 /// Refinements of that grid about its best place.
@@ -30,6 +34,46 @@ pub fn clearance(task: &Task) -> [f64; 2] {
     let bodies = TaskBodies::new(task);
     let seat = bodies.deepest();
     [0, 1].map(|axis| bodies.play(task.success.depth.min(seat.depth), seat.at, axis))
+}
+
+/// Play of the upright plug in rotation about its axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RotationalPlay {
+    /// Total angle, rad.
+    pub angle: f64,
+    /// Its arc at the inserted corner of the plug that is farthest from the axis, such as that of a key, m.
+    pub arc: f64,
+}
+
+/// Returns the play in rotation, at the depth of [`clearance`]; `None` if the plug turns freely.
+pub fn rotational_play(task: &Task) -> Option<RotationalPlay> {
+    let bodies = TaskBodies::new(task);
+    let seat = bodies.deepest();
+    let depth = task.success.depth.min(seat.depth);
+    let [x, y] = bodies.centred(depth, seat.at);
+    let overlap = |angle: f64| {
+        let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), angle);
+        bodies.overlap(&Pose::from_parts(Vector3::new(x, y, -depth).into(), turn)).0
+    };
+    let least = overlap(0.0).max(TOUCHING);
+    let [back, forth] = [-1.0, 1.0]
+        .map(|sign| largest_free(MAX_TURN, TURN_RESOLUTION, |angle| overlap(sign * angle) > least));
+    let angle = back + forth;
+    let inserted = |part: &Part| clipped(&part.solid.corners(), 2, [f64::NEG_INFINITY, depth]);
+    let corners = bodies.plug.parts.iter().flat_map(inserted);
+    let farthest = corners.map(|p| libm::hypot(p.x, p.y)).fold(0.0, f64::max);
+    (angle < MAX_TURN).then_some(RotationalPlay { angle, arc: angle * farthest })
+}
+
+/// Returns the largest value from 0 to `most`, to a resolution, that is not blocked.
+fn largest_free(most: f64, resolution: f64, blocked: impl Fn(f64) -> bool) -> f64 {
+    let (mut free, mut beyond) = (0.0, most);
+    while beyond - free > resolution {
+        let middle = (free + beyond) / 2.0;
+        let end = if blocked(middle) { &mut beyond } else { &mut free };
+        *end = middle;
+    }
+    free
 }
 
 /// Deepest pose of the upright plug.
@@ -85,7 +129,7 @@ impl<'a> TaskBodies<'a> {
         let aside = lateral + ASIDE;
         let free = |depth: &f64| {
             let at = [[x - aside, y], [x + aside, y], [x, y - aside], [x, y + aside]];
-            at.into_iter().any(|at| self.overlap(*depth, at).0 <= TOLERANCE)
+            at.into_iter().any(|at| self.overlap_at(*depth, at).0 <= TOLERANCE)
         };
         let depths = (0..).map(|i| f64::from(i) * STEP).take_while(|depth| *depth < -z);
         depths.take_while(free).last().unwrap_or(0.0)
@@ -93,29 +137,27 @@ impl<'a> TaskBodies<'a> {
 
     /// Returns the total play of the upright plug at a depth along an axis (0 x, 1 y), m.
     pub fn play(&self, depth: f64, at: [f64; 2], axis: usize) -> f64 {
-        // A seated plug may touch walls: it is centred between them first.
-        let mut middle = at;
+        self.free_distances(depth, self.centred(depth, at), axis).iter().sum()
+    }
+
+    /// Returns the place of the upright plug centred between the walls at a depth, m: a seated plug may touch them.
+    fn centred(&self, depth: f64, mut at: [f64; 2]) -> [f64; 2] {
         for axis in [0, 1, 0, 1] {
-            let [back, forth] = self.free_distances(depth, middle, axis);
-            middle[axis] += (forth - back) / 2.0;
+            let [back, forth] = self.free_distances(depth, at, axis);
+            at[axis] += (forth - back) / 2.0;
         }
-        self.free_distances(depth, middle, axis).iter().sum()
+        at
     }
 
     /// Returns the free distances in both directions along an axis, m: those up to a larger overlap than that at `at`.
     fn free_distances(&self, depth: f64, at: [f64; 2], axis: usize) -> [f64; 2] {
-        let least = self.overlap(depth, at).0.max(TOUCHING);
+        let least = self.overlap_at(depth, at).0.max(TOUCHING);
         [-1.0, 1.0].map(|sign| {
-            let (mut free, mut blocked) = (0.0, MAX_PLAY);
-            while blocked - free > TOUCHING {
-                let middle = (free + blocked) / 2.0;
+            largest_free(MAX_PLAY, TOUCHING, |by| {
                 let mut place = at;
-                place[axis] += sign * middle;
-                let hit = self.overlap(depth, place).0 > least;
-                let end = if hit { &mut blocked } else { &mut free };
-                *end = middle;
-            }
-            free
+                place[axis] += sign * by;
+                self.overlap_at(depth, place).0 > least
+            })
         })
     }
 
@@ -135,7 +177,7 @@ impl<'a> TaskBodies<'a> {
 
     /// Finds a free place at this depth, near `at` if possible; otherwise returns the two parts that collide.
     fn free_place(&self, depth: f64, mut at: [f64; 2]) -> Result<[f64; 2], [usize; 2]> {
-        let mut best = self.overlap(depth, at);
+        let mut best = self.overlap_at(depth, at);
         if best.0 <= TOLERANCE {
             return Ok(at);
         }
@@ -152,7 +194,7 @@ impl<'a> TaskBodies<'a> {
                 for j in 0..=GRID {
                     let share = |k: i32| f64::from(2 * k - GRID) / f64::from(GRID);
                     let place = [middle[0] + half[0] * share(i), middle[1] + half[1] * share(j)];
-                    let found = self.overlap(depth, place);
+                    let found = self.overlap_at(depth, place);
                     if found.0 < best.0 {
                         (best, at) = (found, place);
                     }
@@ -167,9 +209,13 @@ impl<'a> TaskBodies<'a> {
     }
 
     /// Returns the deepest overlap of the upright plug, m, and the indices of its plug part and its socket part.
-    fn overlap(&self, depth: f64, [x, y]: [f64; 2]) -> (f64, [usize; 2]) {
-        let pose = Pose::translation(x, y, -depth);
-        let found = self.plug.overlap(&pose, &self.socket);
+    fn overlap_at(&self, depth: f64, [x, y]: [f64; 2]) -> (f64, [usize; 2]) {
+        self.overlap(&Pose::translation(x, y, -depth))
+    }
+
+    /// Returns the deepest overlap of the plug at a pose; the rest as [`Self::overlap_at`].
+    fn overlap(&self, pose: &Pose) -> (f64, [usize; 2]) {
+        let found = self.plug.overlap(pose, &self.socket);
         found.map_or((0.0, [0, 0]), |found| (found.depth, found.parts))
     }
 }

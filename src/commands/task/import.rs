@@ -10,12 +10,13 @@ use crate::{
     Context, Failure, Output, RobotRequest, TaskCheck, TaskFile, command, not_stopped, read_task,
 };
 use connector::body::width;
-use connector::mesh::axes::value;
+use connector::mesh::axes::{Unit, value};
 use connector::mesh::mated::{PairTask, check_handle};
+use connector::seat::RotationalPlay;
 use connector::tune::Tuned;
 use connector::write::{self, Notes};
 use input::shipped::Source;
-use input::units::MM;
+use input::units::{DEG, MM};
 use insertion::task::parts_file::{PartsFile, joined, sha256};
 use serde_json::{Value, json};
 use std::path::Path;
@@ -120,7 +121,7 @@ impl Request {
         let [plug, socket] = self.names();
         let [unit, along, jaws] = [value(*unit), value(*along), value(*jaws)];
         let head = format!(
-            "Imported from {plug} and {socket}, in {unit}, inserted along {along}, jaws along {jaws}."
+            "Imported from {plug} and {socket}, unit `{unit}`, inserted along {along}, jaws along {jaws}."
         );
         let held = made.task.plug.parts.last().map_or("", |part| &part.name);
         let held = format!(
@@ -163,6 +164,8 @@ fn json(mated: &MatedTask, tuned: Option<&Tuned>, checked: &TaskCheck) -> Value 
         "clearance_mm": clearance_x_mm.min(clearance_y_mm),
         "clearance_x_mm": clearance_x_mm,
         "clearance_y_mm": clearance_y_mm,
+        "clearance_about_z_deg": mated.turn.map(|play| play.angle / DEG),
+        "clearance_about_z_mm": mated.turn.map(|play| play.arc / MM),
         "body_mm": body_mm(&mated.made),
         "plug_was_inward": mated.inward[0],
         "socket_was_inward": mated.inward[1],
@@ -192,16 +195,23 @@ fn text(
     let [along, jaws] = [value(mated.along), value(mated.jaws)];
     let along =
         along.strip_prefix('-').map_or(format!("along {along}"), |axis| format!("against {axis}"));
-    let mut text = format!(
+    let turn = mated.turn.map_or(String::new(), |RotationalPlay { angle, arc }| {
+        format!(", {:.1}° about its z ({:.3} mm at the farthest corner)", angle / DEG, arc / MM)
+    });
+    let lines = |of: Vec<&(&str, String)>| -> String {
+        of.iter().map(|(what, why)| format!("{what:<14}{why}\n")).collect()
+    };
+    let guessed = |(what, _): &&(&str, String)| *what == "unit" && mated.unit != Unit::Mm;
+    let (guesses, findings) = mated.findings.iter().partition(guessed);
+    let mut text = lines(guesses);
+    text += &format!(
         "written       {out}\nplug          {plug}, {plug_parts} convex parts: held by the fingers\n\
          socket        {socket}, {socket_parts} convex parts: fixed\n\
-         axes          inserted {along}, the jaws close along {jaws}, both of the socket's file\n\
-         clearance     {clearance_y_mm:.3} mm in y, {clearance_x_mm:.3} mm in x\n\
-         body          {wide:.1} x {high:.1} mm between the pads (y, x), up to z = {long:.1} mm when seated\n"
+         axes          of the socket's file: inserted {along}, the jaws close along {jaws}; in the task these are -z and y\n\
+         clearance     {clearance_y_mm:.3} mm in the task's y, {clearance_x_mm:.3} mm in its x{turn}\n\
+         body          {wide:.1} x {high:.1} mm between the pads (the task's y, x), up to its z = {long:.1} mm when seated\n"
     );
-    for (what, why) in &mated.findings {
-        text.push_str(&format!("{what:<14}{why}\n"));
-    }
+    text += &lines(findings);
     for (name, inward) in ["plug", "socket"].into_iter().zip(mated.inward) {
         if inward {
             text.push_str(&format!("normals       of the {name} pointed inward; reversed\n"));

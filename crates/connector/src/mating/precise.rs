@@ -186,7 +186,7 @@ pub fn mate(parts: &Parts, scene: &Scene, pose: &Pose, max_play: f64) -> Mate {
         pose: Isometry3::from_parts(Translation3::identity(), turned) * moved,
         out: Unit::new_normalize(back * Vector3::z()),
         across: [Vector3::x(), Vector3::y()].map(|axis| Unit::new_normalize(back * axis)),
-        engaged_m: pose.depth,
+        engaged_m: pose.depth + pose.z - z,
         nose_m: pose.nose,
         play_m,
         through: pose.through,

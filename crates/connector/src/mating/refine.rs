@@ -268,9 +268,11 @@ impl Fine {
         let (s, p) = (self.upper.eroded(free / 2), self.tight.eroded(free - free / 2));
         let (height, at) = freed(&s, &p, shift, side);
         let depth = (f64::from(height) - pose.z).max(0.0);
-        let met = touching([&s, &p], at, height - LEVEL).map(|[x, y]| p.at(x, y));
-        let met = met.fold(-NOWHERE, f32::max);
-        let nose = if depth > 0.0 { (f64::from(met) - self.heights[1][0]).max(0.0) } else { 0.0 };
+        // By the edge of the socket: within the tolerance, a chamfer of the tip touches it at several heights.
+        let met = touching([&s, &p], at, height - LEVEL);
+        let edge = met.map(|[x, y]| s.at(x + at[0], y + at[1])).fold(-NOWHERE, f32::max);
+        let nose = f64::from(edge - height) - self.heights[1][0];
+        let nose = if depth > 0.0 { nose.max(0.0) } else { 0.0 };
         Pose { depth, nose, ..pose }
     }
 

@@ -135,6 +135,21 @@ fn a_narrower_nose_is_ahead_of_the_part_that_engages() {
     assert!(mate.nose_m < CLOSE, "{mate:?}");
 }
 
+/// Tip with a chamfer 0.4 mm high.
+#[test]
+fn a_chamfer_of_the_tip_adds_nothing_to_the_depth() {
+    let narrower = |p: Point3<f64>| match p.z > 0.0 {
+        true => p,
+        false => Point3::new(0.8 * p.x, 0.8 * p.y, p.z),
+    };
+    let tip = block([0.0; 2], [3.0, 2.0], [0.0, 0.4]).iter().map(|t| t.map(narrower)).collect();
+    let body = block([0.0; 2], [3.0, 2.0], [0.4, 6.0]);
+    let plug = [tip, body, block([0.0; 2], [5.0, 3.5], [4.0, 9.0])].concat();
+    let (mate, _) = found(&plug, &hole([6.0, 5.0], [3.1, 2.16], 4.0), 5);
+    close(&mate, [0.0; 3], [0.1, 0.16]);
+    assert!((mate.depth_m() - 4.0 * MM).abs() < 1e-3 * MM, "{mate:?}");
+}
+
 /// A key on one side, at a corner, and the slot for it or for its mirror image.
 #[test]
 fn a_key_beside_its_slot_stops_the_plug_early() {
@@ -351,6 +366,16 @@ fn assembled_plug_leaves_upward() {
 }
 
 /// Five bodies of a plug, a label and three of a socket, in contact with one another within each and at the seat.
+/// Its depth is that of the seat into which it is moved.
+#[test]
+fn assembled_plug_above_its_seat_has_the_depth_of_the_seat() {
+    let above: Mesh =
+        peg([3.0, 2.0]).iter().map(|t| t.map(|p| mm(0.0, 0.0, 0.05) + p.coords)).collect();
+    let mate = assembled(&above, &hole([6.0, 5.0], [3.1, 2.1], 4.0)).expect("leaves");
+    assert!((mate.pose.translation.z + 0.05 * MM).abs() < 1e-3 * MM, "{mate:?}");
+    assert!((mate.depth_m() - 4.0 * MM).abs() < 1e-3 * MM, "{mate:?}");
+}
+
 #[test]
 fn bodies_of_a_plug_are_told_from_those_of_its_socket() {
     let holed = |low: f64, high: f64| tube([0.0; 2], [3.0, 2.0], [1.0, 0.8], [low, high]);

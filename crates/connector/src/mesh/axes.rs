@@ -8,6 +8,8 @@ pub use insertion::value_name as value;
 pub enum Unit {
     /// Millimetres
     Mm,
+    /// Centimetres
+    Cm,
     /// Inches
     In,
     /// Metres
@@ -19,6 +21,7 @@ impl Unit {
     pub fn metres(self) -> f64 {
         match self {
             Unit::Mm => MM,
+            Unit::Cm => 10.0 * MM,
             Unit::In => 25.4 * MM,
             Unit::M => 1.0,
         }

@@ -1,13 +1,12 @@
 //! Grasp of a plug: two parallel faces below a surface on which the roofs of the fingertips rest, or an added handle.
 
-use crate::body::{extent, width};
+use crate::body::{clipped, extent, width};
 use crate::check::FACES_MM;
 use crate::draft::{Size, block};
 use crate::hold::{PAD_X, SEAM, pad_z};
 use crate::mesh::Triangle;
 use input::units::MM;
 use insertion::{Pad, Part};
-use nalgebra::Point3;
 
 /// Smallest height of the faces between the pads, m.
 const MIN_HEIGHT: f64 = 3.0 * MM;
@@ -44,9 +43,13 @@ struct Face {
 
 impl Grasp {
     /// Returns whether this grasp is preferred to one across the axis that comes first: whether its faces are much
-    /// larger, as those of a body compared with those of its cable boot.
+    /// larger, as those of a body compared with those of its cable boot, or of similar size but narrower than the pads,
+    /// which the others are not: the start errors are then along the longer side of the plug.
     pub fn replaces(&self, first: &Grasp) -> bool {
-        self.area > MUCH_LARGER * first.area
+        let within =
+            |grasp: &Grasp| width(extent(grasp.part.solid.corners(), 0)) < width(narrowed(PAD_X));
+        let similar = first.area <= MUCH_LARGER * self.area;
+        self.area > MUCH_LARGER * first.area || similar && within(self) && !within(first)
     }
 }
 
@@ -93,6 +96,11 @@ fn common(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
     [a[0].max(b[0]), a[1].min(b[1])]
 }
 
+/// Returns an interval without the tolerance at both ends, in which surfaces that only touch an end are not.
+fn narrowed([low, high]: [f64; 2]) -> [f64; 2] {
+    [low + SEAM, high - SEAM]
+}
+
 /// Returns the upright faces whose normals point along y in the direction of `sign`; coplanar ones are joined.
 fn faces(plug: &[Triangle], sign: f64) -> Vec<Face> {
     let mut found: Vec<Face> = Vec::new();
@@ -132,12 +140,14 @@ fn grasp_at(
     if !(FACES_MM[0]..=FACES_MM[1]).contains(&(width(faces) / MM)) {
         return Err("they are too close or too far apart for a gripper");
     }
-    let in_pad = |p: &&Point3<f64>| PAD_X[0] < p.x && p.x < PAD_X[1];
-    let points = || plug.iter().flatten().filter(in_pad);
     // The highest points under the two roofs must be at the same height.
+    let across = narrowed(PAD_X);
     let top = |column: [f64; 2]| {
-        let near = |p: &&Point3<f64>| column[0] - SEAM < p.y && p.y < column[1] + SEAM;
-        extent(points().filter(near), 2)[1]
+        let column = [column[0] - SEAM, column[1] + SEAM];
+        plug.iter().fold(f64::NEG_INFINITY, |top, face| match extent(face, 2)[1] > top {
+            true => top.max(extent(clipped(&clipped(face, 0, across), 1, column), 2)[1]),
+            false => top,
+        })
     };
     let roof = Pad::PUBLISHED.roof.min(width(faces) / 2.0);
     let tops = [top([faces[0], faces[0] + roof]), top([faces[1] - roof, faces[1]])];
@@ -145,10 +155,9 @@ fn grasp_at(
     let pads = pad_z(shoulder);
     let held = common(z, pads);
     let in_the_way = |face: &Triangle| {
-        let within = extent(face, 2)[1] > pads[0] && extent(face, 2)[0] < pads[1];
-        let near = extent(face, 0)[1] > PAD_X[0] && extent(face, 0)[0] < PAD_X[1];
-        let [from, to] = extent(face, 1);
-        within && near && (from < faces[0] - SEAM || to > faces[1] + SEAM)
+        let beyond = |[from, to]: [f64; 2]| from < faces[0] - SEAM || to > faces[1] + SEAM;
+        beyond(extent(face, 1))
+            && beyond(extent(clipped(&clipped(face, 2, narrowed(pads)), 0, across), 1))
     };
     if (tops[0] - tops[1]).abs() > SEAM {
         return Err("the roofs of the fingertips would rest at different heights");
@@ -232,6 +241,22 @@ mod tests {
         assert_eq!(held(&[body, [7.0, 13.0, 20.0, 21.0]]), (None, Some((11.0, obstructed))));
         let wide = "they are too close or too far apart for a gripper";
         assert_eq!(held(&[[7.0, 200.0, 10.0, 26.0]]), (None, Some((200.0, wide))));
+    }
+
+    /// No corner of the plug is between the pads.
+    #[test]
+    fn faces_wider_than_the_pads_are_held() {
+        let wide = stacked(&[[8.0, 5.0, 0.0, 8.0], [14.0, 9.0, 8.0, 22.0]]);
+        let (grasp, rejected) = own(&wide, 8.0 * MM);
+        assert_eq!(rejected, None);
+        let grasp = grasp.expect("a grasp");
+        assert!((grasp.shoulder - 22.0 * MM).abs() < 1e-9);
+        // Narrower faces are preferred unless they are much smaller.
+        let held = |blocks: &[[f64; 4]]| own(&stacked(blocks), 8.0 * MM).0.expect("a grasp");
+        let turned = held(&[[5.0, 8.0, 0.0, 8.0], [9.0, 14.0, 8.0, 22.0]]);
+        assert!(turned.replaces(&grasp) && !grasp.replaces(&turned));
+        let boot = held(&[[4.0, 8.0, 8.0, 22.0]]);
+        assert!(!boot.replaces(&grasp));
     }
 
     #[test]

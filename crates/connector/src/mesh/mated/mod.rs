@@ -219,13 +219,25 @@ fn checked_skin(
 ) -> (Vec<Part>, Vec<Deviation>) {
     let drawn = Drawn::new(triangles);
     let solids = skin(triangles, &reached, |solid| drawn.trimmed(solid));
-    let parts = (1..).zip(solids).map(|(i, solid)| draft::part(&format!("{name} {i}"), solid));
+    let called = |i: usize, solid: &Solid| format!("{name} {i} {}", side(solid));
+    let parts = (1..).zip(solids).map(|(i, solid)| draft::part(&called(i, &solid), solid));
     let parts: Vec<Part> = parts.collect();
     let normal = |[a, b, c]: &Triangle| (b - a).cross(&(c - a)).try_normalize(0.0);
     let kept = triangles.iter().filter(|t| normal(t).is_some_and(|normal| reached(t, &normal)));
     let kept: Vec<Triangle> = kept.copied().collect();
     let found = drawn.deviations(&kept, &parts);
     (parts, found)
+}
+
+/// Returns the side of the plug's axis on which a solid lies.
+fn side(solid: &Solid) -> &'static str {
+    let corners = solid.corners();
+    // Largest distance by which the axis is outside of the solid, along x and y; below 0 inside.
+    let beyond = [0, 1].map(|axis| extent(&corners, axis)).map(|[low, high]| [low, -high]);
+    let [[right, left], [back, front]] = beyond;
+    let sides = [(right, "at +x"), (left, "at -x"), (back, "at +y"), (front, "at -y")];
+    let most = sides.into_iter().max_by(|a, b| a.0.total_cmp(&b.0));
+    most.filter(|(distance, _)| *distance > 0.0).map_or("on the axis", |(_, side)| side)
 }
 
 /// Moves a solid along z, m.

@@ -32,6 +32,9 @@ const SHARE: f64 = 0.4;
 
 /// Step of the depth at which more walls could face each other, m.
 const DROP: f64 = 0.1 * MM;
+/// Further depth up to which a plug is in its seat, m: the height of a chamfer at the edge of the socket, or of a gap below
+/// the body of a plug whose tip is on the floor.
+const SEATED: f64 = 1.0 * MM;
 /// Share of the largest area of walls that face one another from which all of them count as facing.
 const FULL_AREA: f64 = 0.995;
 
@@ -309,7 +312,7 @@ impl Fine {
     }
 
     /// Returns the least further depth at which most walls would face one another if nothing stopped the plug, m: 0 if
-    /// those at its seat are [`SIMILAR`], as they are unless a key or a screw is in the way.
+    /// it is at most [`SEATED`] or those at its seat are [`SIMILAR`], as they are unless a key or a screw is in the way.
     pub fn missed(&self, pose: &Pose) -> f64 {
         let (faces, at) = (self.faces(), self.cells(pose));
         let walls = |by: f64| score(&self.sides.facing(&faces, at, (pose.z - by) as f32 + LEVEL));
@@ -319,7 +322,8 @@ impl Fine {
         let most = areas.iter().fold(0.0, |most, (area, _)| area.max(most));
         // In a deep socket the area stays the same below the depth at which all walls face one another.
         let first = areas.into_iter().find(|(area, _)| *area >= FULL_AREA * most);
-        first.filter(|_| SIMILAR * most > walls(0.0)).map_or(0.0, |(_, by)| by)
+        let missed = |(_, by): &(f64, f64)| *by > SEATED && SIMILAR * most > walls(0.0);
+        first.filter(missed).map_or(0.0, |(_, by)| by)
     }
 
     /// Returns the width of the region that both parts fill at a pose, m.

@@ -117,6 +117,9 @@ fn peg_rests_in_its_hole() {
     assert_eq!(count, 2);
     assert!((mate.engaged_m - 4.0 * MM).abs() < CLOSE, "{mate:?}");
     assert!(!mate.through, "{mate:?}");
+    // The tip is on the floor and the body 0.3 mm above the socket.
+    let (mate, _) = found(&peg([3.0, 2.0]), &hole([6.0, 5.0], [3.1, 2.16], 3.7), 5);
+    assert_eq!(mate.missed_m, 0.0, "{mate:?}");
 }
 
 /// A nose of 3 mm, with 2 mm of play, ahead of the body.

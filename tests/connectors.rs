@@ -337,13 +337,16 @@ fn unit_and_axis_of_the_jaws_are_as_requested() {
 #[test]
 fn a_requested_axis_that_cannot_be_held_is_refused() {
     let folder = Studies::new();
-    let [plug, socket] = shell();
-    let plug = folder.file("plug.stl", stl(&plug, [1, 2, 0]));
+    let wide = block([-6.0, 6.0], [-55.0, 55.0], [0.0, 20.0]);
+    let plug = [block([-2.0, 2.0], [-5.0, 5.0], [-8.0, 0.0]), wide];
+    let mut socket = frame([18.0, 18.0], [4.2, 10.2], [-8.0, 0.0]);
+    socket.push(block([-9.0, 9.0], [-9.0, 9.0], [-10.0, -8.0]));
+    let plug = folder.file("plug.stl", stl(&plug, [0, 1, 2]));
     let socket = folder.file("socket.stl", stl(&socket, [0, 1, 2]));
     let out = folder.word("x.toml");
-    let words = ["task", "import", "--plug", &plug, "--socket", &socket, "--jaws", "x"];
-    let low = "--jaws x: the plug's faces 6.0 mm apart: the pads, with their roofs on top,";
-    optimize(&[&words[..], &["--out", &out]].concat()).fails(2, &[low, "--body"]);
+    let words = ["task", "import", "--plug", &plug, "--socket", &socket, "--jaws", "y"];
+    let far = "--jaws y: the plug's faces 110.0 mm apart: they are too close or too far apart";
+    optimize(&[&words[..], &["--out", &out]].concat()).fails(2, &[far, "--body"]);
     assert!(!folder.dir("x.toml").exists());
 }
 

@@ -1,4 +1,4 @@
-//! Faults of the structure of a TOML file: unknown and missing keys, and values of another type or name.
+//! Faults of the structure of a TOML file: unknown and missing keys, and the first value of another type or name.
 
 use crate::{Document, InputError, Place, shipped};
 use serde::de::DeserializeOwned;
@@ -9,14 +9,12 @@ use toml::de::{DeArray, DeInteger, DeTable, DeValue, Error, ValueDeserializer};
 
 /// Largest number of faults that are reported at once.
 pub const MAX_FAULTS: usize = 10;
-/// Largest number of words of a message that are tried as the text of a placeholder.
-const MAX_WORDS: usize = 12;
+/// Largest text, bytes, of which more than the first fault is reported: each fault takes several readings.
+const MAX_LENGTH: usize = 16 << 10;
 /// Span of the values that are not in the file.
 const PLACEHOLDER: Range<usize> = usize::MAX..usize::MAX;
 const UNKNOWN: &str = "unknown field `";
 const MISSING: &str = "missing field `";
-/// Beginnings of messages about a value for which another value may be substituted.
-const VALUES: [&str; 3] = ["unknown variant `", "unknown path `", "invalid type: "];
 
 /// Returns the error of a file with invalid TOML or an unexpected structure; `text` is that of the file, empty for a
 /// table without a text.
@@ -53,7 +51,7 @@ fn fault(file: &str, text: &str, mut error: Error, near: Option<&str>) -> InputE
 
 /// Returns the word nearest to the unknown key or word of a parser's message, of the accepted words and `more` words.
 fn nearest_key<'a>(message: &'a str, more: &[&'a str]) -> Option<&'a str> {
-    [UNKNOWN, VALUES[0]].into_iter().find(|begin| message.starts_with(begin))?;
+    [UNKNOWN, "unknown variant `"].into_iter().find(|begin| message.starts_with(begin))?;
     let mut words = message.split('`').skip(1).step_by(2);
     let (given, accepted) = (words.next()?, words.chain(more.iter().copied()));
     shipped::nearest(given, &accepted.collect::<Vec<_>>())
@@ -69,18 +67,17 @@ type Repaired<'a> = (Document<'a>, Option<Error>);
 
 impl<'a> Document<'a> {
     /// Returns the faults of a document of which `error` is the first one, as one error: in the order of the file,
-    /// missing keys last, [`MAX_FAULTS`] at most. Each fault is repaired in the tree to find the next one.
+    /// missing keys last, [`MAX_FAULTS`] at most. Unknown and missing keys are repaired in the tree to find the next
+    /// fault.
     pub(crate) fn faults<T: DeserializeOwned>(mut self, error: Error) -> InputError {
         let (mut found, mut next) = (Vec::new(), Some(error));
-        while let Some(error) = next.take() {
+        let most = if self.text.len() > MAX_LENGTH { 1 } else { MAX_FAULTS };
+        while let Some(error) = next.take_if(|_| found.len() < most) {
             let (near, repaired) = self.repaired::<T>(&error);
             let missing = missing_key(error.message()).is_some();
             let order = (missing, error.span().map(|span| span.start));
-            // After a repair only the structure is certain.
-            if found.is_empty() || repaired.is_some() || missing {
-                found.push((order, fault(self.file, self.text, error, near.as_deref())));
-            }
-            if let (Some((document, after)), true) = (repaired, found.len() < MAX_FAULTS) {
+            found.push((order, fault(self.file, self.text, error, near.as_deref())));
+            if let Some((document, after)) = repaired {
                 (self, next) = (document, after);
             }
         }
@@ -101,7 +98,7 @@ impl<'a> Document<'a> {
         let message = error.message();
         if !message.starts_with(UNKNOWN) {
             let near = nearest_key(message, &[]).map(str::to_owned);
-            return (near, self.with_placeholder::<T>(error));
+            return (near, self.with_missing::<T>(error));
         }
         let renamed = |name: Option<&str>| {
             let at = error.span()?;
@@ -123,35 +120,23 @@ impl<'a> Document<'a> {
         (near, repaired)
     }
 
-    /// Returns the document with a value in place of an invalid one or for a missing key; `None` if none is accepted.
-    fn with_placeholder<T: DeserializeOwned>(&self, error: &Error) -> Option<Repaired<'a>> {
-        let (message, at) = (error.message(), error.span()?);
-        let key = missing_key(message);
-        if key.is_none() && !VALUES.iter().any(|begin| message.starts_with(begin)) {
-            return None;
-        }
-        let with = |new: DeValue<'a>| self.changed::<T>(|value| place(value, &at, key, &new));
+    /// Returns the document with any accepted value for a missing key; `None` if none is accepted.
+    fn with_missing<T: DeserializeOwned>(&self, error: &Error) -> Option<Repaired<'a>> {
+        let (key, at) = (missing_key(error.message())?, error.span()?);
+        let with = |new: DeValue<'a>| self.changed::<T>(|table| insert(table, &at, key, &new));
         let fits = |(_, after): &Repaired<'_>| {
             after.as_ref().and_then(Error::span).is_none_or(|span| span != PLACEHOLDER)
         };
-        let text = |word: &str| DeValue::String(Cow::Owned(word.to_owned()));
-        let empty = with(text(""))?;
-        // Messages list the accepted words.
-        let about_empty = empty.1.as_ref().map_or("", Error::message).to_owned();
-        let words = [message, &about_empty].into_iter().flat_map(|message| {
-            let end = |c: char| !c.is_alphanumeric() && !"_.-".contains(c);
-            message.split(end).filter(|word| !word.is_empty()).take(MAX_WORDS)
-        });
+        let number = DeValue::Integer(DeInteger::default());
         let zeros = |count: usize| {
-            let zero = Spanned::new(PLACEHOLDER, DeValue::Integer(DeInteger::default()));
             let mut zeros = DeArray::new();
-            (0..count).for_each(|_| zeros.push(zero.clone()));
+            (0..count).for_each(|_| zeros.push(Spanned::new(PLACEHOLDER, number.clone())));
             DeValue::Array(zeros)
         };
-        let number = DeValue::Integer(DeInteger::default());
-        let plain = [number, DeValue::Table(DeTable::new()), zeros(0), zeros(2), zeros(3)];
-        let mut rest = plain.into_iter().chain(words.map(text)).filter_map(with);
-        if fits(&empty) { Some(empty) } else { rest.find(fits) }
+        let text = DeValue::String(Cow::Borrowed(""));
+        let table = DeValue::Table(DeTable::new());
+        let values = [text, number.clone(), zeros(2), zeros(3), zeros(0), table];
+        values.into_iter().filter_map(with).find(fits)
     }
 
     /// Returns the document with a change of the first value to which it applies, and its error; `None` if there is no
@@ -192,20 +177,19 @@ fn rename(table: &mut Spanned<DeValue<'_>>, at: &Range<usize>, new: Option<&str>
     true
 }
 
-/// Replaces the value at these bytes of the text, or inserts `key` into the table there. Returns whether it is there.
-fn place<'a>(
-    value: &mut Spanned<DeValue<'a>>,
+/// Inserts a missing key into the table at these bytes of the text. Returns whether the table is there.
+fn insert<'a>(
+    table: &mut Spanned<DeValue<'a>>,
     at: &Range<usize>,
-    key: Option<&str>,
+    key: &str,
     new: &DeValue<'a>,
 ) -> bool {
-    let (found, new) = (value.span() == *at, Spanned::new(PLACEHOLDER, new.clone()));
-    match (key, value.get_mut()) {
-        (None, _) if found => *value = new,
-        (Some(key), DeValue::Table(table)) if found && !table.contains_key(key) => {
-            table.insert(Spanned::new(PLACEHOLDER, Cow::Owned(key.to_owned())), new);
-        }
-        _ => return false,
+    let found = table.span() == *at;
+    let DeValue::Table(table) = table.get_mut() else { return false };
+    if !found || table.contains_key(key) {
+        return false;
     }
+    let key = Spanned::new(PLACEHOLDER, Cow::Owned(key.to_owned()));
+    table.insert(key, Spanned::new(PLACEHOLDER, new.clone()));
     true
 }

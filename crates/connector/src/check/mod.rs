@@ -37,8 +37,10 @@ impl From<&InputError> for Problem {
     fn from(error: &InputError) -> Self {
         let problem = &*error.problem;
         let Some(key) = &error.place.key else {
-            // The parser names an unknown or missing key in backticks.
-            let key = problem.split('`').nth(1).unwrap_or("the file");
+            // The parser names an unknown or missing key in backticks; further faults follow the first.
+            let first = problem.split("\nTOML").next().unwrap_or(problem);
+            let key = first.split_once(" field `").and_then(|(_, rest)| rest.split('`').next());
+            let key = key.unwrap_or("the file");
             let remedy = "see docs/guide/tasks.md, or `optimize task show usb`";
             return Problem::new(key, problem, remedy);
         };

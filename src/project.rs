@@ -70,7 +70,7 @@ impl Project {
     fn read(folder: &Path) -> Result<Self, Failure> {
         let path = folder.join(PROJECT_FILE);
         let Source { file, text } = Source::read("project file", &path).map_err(Failure::input)?;
-        let table: toml::Table = input::read(&text, &file).map_err(Failure::input)?;
+        let table: toml::Table = input::read(&text, &file)?;
         let mut project = Project { file, text, settings: Settings::default() };
         let fault = |(key, value): (&String, _)| Some(project.fault(key, key_problem(key, value)?));
         let mut faults: Vec<Failure> = table.iter().filter_map(fault).collect();
@@ -79,7 +79,7 @@ impl Project {
             let text = faults.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n");
             return Err(Failure::input(RequestError { place: first.place(), text }));
         }
-        project.settings = input::read(&project.text, &project.file).map_err(Failure::input)?;
+        project.settings = input::read(&project.text, &project.file)?;
         let Settings { task, robot, cell, measurements, space, .. } = &mut project.settings;
         for value in [task, robot, cell, measurements, space].into_iter().flatten() {
             let each = value.split(',').map(|name| beside(folder, name.trim()));

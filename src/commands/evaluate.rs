@@ -96,8 +96,7 @@ impl Request {
         let chosen = self.finger.choose(&setup)?;
         let measured = self.measured(&chosen)?;
         let clock = Instant::now();
-        let evaluation = setup.evaluator.simulate(&chosen.scenario, self.search(), &plan, stop);
-        let evaluation = evaluation.map_err(Failure::input)?;
+        let evaluation = setup.evaluator.simulate(&chosen.scenario, self.search(), &plan, stop)?;
         not_stopped(stop)?;
         let wall_s = clock.elapsed().as_secs_f64();
         let window = &evaluation.window;

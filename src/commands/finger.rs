@@ -73,15 +73,15 @@ impl command::Request for Request {
         }
         let set = Design(self.set.iter().cloned().collect());
         let file = finger_file(&self.finger)?;
-        let finger = file.with(&set).map_err(Failure::input)?;
+        let finger = file.with(&set)?;
         let [density, direction] = self.infill.required()?;
         let infill = infill(&Design::infill(density, direction), self.phase_mm);
-        let geometry = Geometry::new(&finger, &infill).map_err(Failure::input)?;
-        let computed = mechanics::compute(&geometry).map_err(Failure::input)?;
+        let geometry = Geometry::new(&finger, &infill)?;
+        let computed = mechanics::compute(&geometry)?;
         let mut design = Design::infill(density, direction);
         design.0.extend(set.0);
         let model = predicted_stiffness(&file.finger, &design)?;
-        let svg = picture::svg(&geometry, self.load_n).map_err(Failure::input)?;
+        let svg = picture::svg(&geometry, self.load_n)?;
         let value = json(&geometry, &computed, model.as_ref());
         let text = wrapped(&text(&geometry, &computed, model.as_ref()));
         Output::new(text, value).drawn(svg, self.svg.as_ref())

@@ -57,7 +57,7 @@ pub(crate) fn levers(
     };
     let space = &setup.space;
     let analysis = LeverAnalysis { evaluator, template, space, design, given, done: &done };
-    let levers = analysis.levers(infill, context.stop).map_err(Failure::input)?;
+    let levers = analysis.levers(infill, context.stop)?;
     context.check()?;
     Ok(levers)
 }

@@ -55,7 +55,7 @@ impl command::Request for Request {
         context.begin(cost::MAP);
         let setup = self.setup.setup()?;
         let chosen = self.finger.choose(&setup)?;
-        let taught = setup.evaluator.taught(&chosen.scenario, stop).map_err(Failure::input)?;
+        let taught = setup.evaluator.taught(&chosen.scenario, stop)?;
         let finger = (&chosen.scenario, &chosen.design);
         let map = map_of(&setup, finger, taught, self.axes, context)?;
         let svg = report::map::svg(&map)?;
@@ -79,7 +79,7 @@ pub(crate) fn map_of(
     axes: Axes,
     context: &Context<'_>,
 ) -> Result<CaptureMap, Failure> {
-    let rig = setup.evaluator.rig(scenario, taught, 1.0).map_err(Failure::input)?;
+    let rig = setup.evaluator.rig(scenario, taught, 1.0)?;
     let grasp = Grasp { stop: context.stop, ..Grasp::of(&scenario.finger) };
     let plane = Plane::new(&*rig, grasp, axes);
     let what = format!("trials of the map {}", value_name(axes));

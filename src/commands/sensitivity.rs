@@ -74,9 +74,8 @@ impl Request {
             let evaluation = evaluate(&factors, (&setup.evaluator, template), unit, stop)?;
             Ok(self.objective.value(&evaluation))
         };
-        let values: Result<Vec<Option<f64>>, DesignError> =
-            sample.points().par_iter().map(value).collect();
-        let values = values.map_err(Failure::input)?;
+        let points = sample.points();
+        let values = points.par_iter().map(value).collect::<Result<Vec<_>, DesignError>>()?;
         not_stopped(stop)?;
         let counted: Vec<f64> = values.iter().map(|value| value.unwrap_or_default()).collect();
         let indices = sample.indices(&counted).ok_or_else(|| {

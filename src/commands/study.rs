@@ -146,7 +146,7 @@ impl Request {
         }
         let priors = self.priors.as_deref().unwrap_or(DEFAULT_PRIORS);
         let source = find("file of priors", PRIORS, priors)?;
-        let priors = Priors::parse(&source.text, &source.file).map_err(Failure::input)?;
+        let priors = Priors::parse(&source.text, &source.file)?;
         let mut setup = self.setup.setup_with(Some(&priors))?;
         let constrained = self.constraints.iter().map(|constraint| constraint.measure);
         let mut measures = self.objective.measures().iter().copied().chain(constrained);

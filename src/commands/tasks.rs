@@ -33,7 +33,7 @@ impl command::Request for Request {
 
 /// Returns the entry of a space or of uncertainties: name and description.
 fn entry(Shipped { name, file, text, .. }: &Shipped) -> Result<Entry, Failure> {
-    let fields: toml::Table = input::read(text, file).map_err(Failure::input)?;
+    let fields: toml::Table = input::read(text, file)?;
     let description = fields.get("description").and_then(toml::Value::as_str).unwrap_or_default();
     let line = format!("  {name:<10} {description}\n");
     Ok((json!({"name": name, "description": description}), line))

@@ -93,9 +93,9 @@ impl CalibrationRequest {
     ) -> Result<Prepared<'a>, Failure> {
         context.cancel_on_interrupt()?;
         let source = find("file of priors", PRIORS, &self.priors)?;
-        let priors = Priors::parse(&source.text, &source.file).map_err(Failure::input)?;
+        let priors = Priors::parse(&source.text, &source.file)?;
         let setup = bench.setup(measurements, &priors)?;
-        setup.evaluator.check_paths(&priors, &source.file).map_err(Failure::input)?;
+        setup.evaluator.check_paths(&priors, &source.file)?;
         let experiments = measured::lines(measurements, &setup.task_names())?;
         let effort = self.effort.completed(None);
         let calibration = CalibrationContext {

@@ -173,11 +173,11 @@ fn bodies(path: &Path, file: &str, context: &Context<'_>) -> Result<(Vec<Body>, 
     let opened = std::fs::File::open(path).map_err(unreadable)?;
     let bytes = input::files::read_up_to(opened, LARGEST_FILE).map_err(unreadable)?;
     if is_step(&bytes, &path.display().to_string()) {
-        let (found, warnings) = STEP.read(path, file).map_err(Failure::input)?;
+        let (found, warnings) = STEP.read(path, file)?;
         warnings.iter().for_each(|warning| context.note(warning));
-        return Ok((read(&found, &format!("{file}.obj")).map_err(Failure::input)?, true));
+        return Ok((read(&found, &format!("{file}.obj"))?, true));
     }
-    Ok((read(&bytes, file).map_err(Failure::input)?, false))
+    Ok((read(&bytes, file)?, false))
 }
 
 /// Returns the plug, which can be withdrawn, and the socket of an assembly, and the names of the plug's bodies.
@@ -198,7 +198,7 @@ fn split(
     let names = |of: &[usize]| of.iter().map(|i| bodies[*i].name.clone()).collect::<Vec<_>>();
     let problem = match found.as_deref() {
         Ok([plug]) => {
-            let picked = pick(&bodies, &names(plug), file).map_err(Failure::input)?;
+            let picked = pick(&bodies, &names(plug), file)?;
             return Ok((picked, quoted(&names(plug))));
         }
         Ok(several) => {

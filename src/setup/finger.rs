@@ -163,10 +163,10 @@ impl FingerRequest {
             }
             None => {
                 self.infill.required()?;
-                evaluator.predict(&design).map_err(Failure::input)?
+                evaluator.predict(&design)?
             }
         };
-        let scenario = evaluator.scenario(template, &design, stiffness).map_err(Failure::input)?;
+        let scenario = evaluator.scenario(template, &design, stiffness)?;
         Ok(ChosenFinger {
             scenario,
             cell: evaluator.cell.clone(),

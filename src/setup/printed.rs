@@ -37,7 +37,7 @@ impl PrintRequest {
     /// If a file is invalid, the study recommends no design, or the finger cannot be built.
     pub fn geometry(&self) -> Result<Geometry, Failure> {
         let (design, file, _) = self.chosen()?;
-        let finger = file.with(&design).map_err(Failure::input)?;
+        let finger = file.with(&design)?;
         Geometry::new(&finger, &infill(&design, self.phase_mm)).map_err(Failure::input)
     }
 

@@ -40,10 +40,8 @@ impl RepeatRequest {
     ) -> Result<(T, usize), Failure> {
         let (evaluator, repeats, stop) = (&setup.evaluator, (self.seed, self.count), context.stop);
         let progress = |done_of| context.part("starts of the repeats", done_of, 0.0);
-        let started = evaluator.drawn(scenario, taught, repeats, stop, progress);
-        let (started, impossible) = started.map_err(Failure::input)?;
-        let measured = evaluator.repeated(&started, repeats, stop, measure);
-        let measured = measured.map_err(Failure::input)?;
+        let (started, impossible) = evaluator.drawn(scenario, taught, repeats, stop, progress)?;
+        let measured = evaluator.repeated(&started, repeats, stop, measure)?;
         context.check()?;
         Ok((measured, impossible))
     }

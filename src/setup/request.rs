@@ -175,7 +175,7 @@ impl SetupRequest {
         let space = find("space", SPACES, &self.space)?;
         let cell = self.cell.as_deref().map(cell).transpose()?;
         let robot = self.robot(priors.and_then(Priors::robot_text), cell.as_ref())?;
-        let parsed = Space::parse(&space.text, &space.file).map_err(Failure::input)?;
+        let parsed = Space::parse(&space.text, &space.file)?;
         let fingers = Fingers::parse(self.finger_model.file(Some(&parsed))?)?;
         let stiffness = stiffness_data(self.stiffness_data.as_deref(), &fingers.file.finger)?;
         let setup =

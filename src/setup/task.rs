@@ -137,7 +137,7 @@ pub(crate) fn nominal_start(
     stop: &AtomicBool,
 ) -> Result<(Finger, Trial), Failure> {
     let (finger, shaped) = medium(task);
-    let rig = engine.rig(task, robot, &shaped, 1.0).map_err(Failure::input)?;
+    let rig = engine.rig(task, robot, &shaped, 1.0)?;
     let trial = rig.grasp(Grasp { stop, ..Grasp::of(&shaped) }).trial(0.0);
     not_stopped(stop)?;
     Ok((finger, trial))
@@ -151,7 +151,7 @@ pub(crate) fn nominal_recording(
     stop: &AtomicBool,
 ) -> Result<(Finger, Recording), Failure> {
     let (_, shaped) = medium(task);
-    let rig = EngineKind::default().rig(task, robot, &shaped, 1.0).map_err(Failure::input)?;
+    let rig = EngineKind::default().rig(task, robot, &shaped, 1.0)?;
     let recording = rig.record(Grasp { stop, ..Grasp::of(&shaped) }, 0.0);
     not_stopped(stop)?;
     let recording = recording.ok_or_else(|| Failure::running("the engine records no trials"))?;

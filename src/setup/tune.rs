@@ -44,7 +44,7 @@ pub fn tune_until_success(
     let robot = robot(&with.name)?;
     let effort = Effort { last, until_enough: true, seed: 0, progress: &|_, _, _, _| () };
     let tuner = Tuner::new(task, &robot, with.engine, stop);
-    let tuned = tune(&tuner, &effort).map_err(Failure::input)?;
+    let tuned = tune(&tuner, &effort)?;
     not_stopped(stop)?;
     Ok(tuned)
 }

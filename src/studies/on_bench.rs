@@ -63,7 +63,7 @@ pub(crate) fn predict(
         let best = by_range(result).first().copied().ok_or_else(nothing)?;
         let (task, cache) = (setup.only_task()?, known.cache.clone());
         let simulation = Simulation::new(&setup.evaluator, task, [].iter(), cache, context.stop);
-        let simulated = simulation.window(&best.design, &[]).map_err(Failure::input)?;
+        let simulated = simulation.window(&best.design, &[])?;
         context.check()?;
         let found = bench_prediction(subject, result, simulated, provenance, effort);
         Ok::<_, Failure>((found, table::predictions_csv(subject, result)))

@@ -24,10 +24,9 @@ pub(crate) fn check(
     let Some((task, nearest)) = record.unusable() else { return Ok(()) };
     let Some(template) = setup.evaluator.templates.get(task) else { return Ok(()) };
     let evaluator = &setup.evaluator;
-    let scenario =
-        evaluator.scenario(template, &nearest.design, nearest.stiffness).map_err(Failure::input)?;
+    let scenario = evaluator.scenario(template, &nearest.design, nearest.stiffness)?;
     let taught = nearest.on(task).and_then(|found| found.taught);
-    let rig = evaluator.rig(&scenario, taught, 1.0).map_err(Failure::input)?;
+    let rig = evaluator.rig(&scenario, taught, 1.0)?;
     let trial = rig.grasp(Grasp { stop, ..Grasp::of(&scenario.finger) }).trial(0.0);
     not_stopped(stop)?;
     let class = outcome(trial.outcome) + stop_words(trial.robot_stopped);

@@ -96,7 +96,7 @@ impl command::Request for Request {
         };
         let effort =
             Effort { last: Stage::Search, until_enough: false, seed: self.seed, progress: &report };
-        let tuned = tune(&tuner, &effort).map_err(Failure::input)?;
+        let tuned = tune(&tuner, &effort)?;
         if context.check().is_err() {
             return Err(self.interrupted(&file, &tuned, target)?);
         }
@@ -150,7 +150,7 @@ impl Request {
         let after = self.rewritten(file, tuned)?;
         let found = self.tuner(&after.task, robot, stop).given(&after.task.strategy);
         not_stopped(stop)?;
-        let found = found.map_err(Failure::input)?;
+        let found = found?;
         self.save(file, &after, target)?;
         Ok(found)
     }

@@ -142,8 +142,7 @@ pub fn within<T: PartialOrd + fmt::Display>(
     match number.into() {
         Some(number) if !range.contains(&number) => {
             let (least, most) = (range.start(), range.end());
-            let problem = format!("{option} {number}: must lie between {least} and {most}");
-            Err(Failure::usage(problem))
+            Err(Failure::usage(format!("{option} {number}: must lie between {least} and {most}")))
         }
         _ => Ok(()),
     }

@@ -157,8 +157,7 @@ impl Request {
         let Some(evaluator) = setup.by_ribs() else { return Ok(None) };
         let chosen = self.finger.choose_with(setup, &evaluator);
         let measured = chosen.and_then(|ChosenFinger { scenario, .. }| {
-            let found = evaluator.simulate_or_teach(&scenario, self.search(), stop);
-            found.map_err(Failure::input)
+            evaluator.simulate_or_teach(&scenario, self.search(), stop).map_err(Failure::input)
         });
         not_stopped(stop)?;
         Ok(Some(match measured {

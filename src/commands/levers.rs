@@ -36,8 +36,7 @@ impl command::Request for Request {
         let setup = self.setup.setup()?;
         let chosen = self.finger.choose(&setup)?;
         let given = chosen.given.then_some(chosen.scenario.stiffness);
-        let finger = (&chosen.design, given);
-        let levers = levers(&setup, finger, None, context)?;
+        let levers = levers(&setup, (&chosen.design, given), None, context)?;
         let (svg, text) = (output::svg(&levers)?, layout::wrapped(&output::text(&levers)));
         Output::new(text, levers_json(&levers)).drawn(svg, self.svg.as_ref())
     }

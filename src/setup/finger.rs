@@ -19,14 +19,12 @@ use serde_json::json;
 /// Parses a stiffness, N/mm.
 fn stiffness(text: &str) -> Result<f64, String> {
     let n_per_mm = text.parse().unwrap_or(f64::NAN);
-    let problem = numbers::problem("stiffness_compliance_n_per_mm", n_per_mm);
-    problem.map_or(Ok(n_per_mm), Err)
+    numbers::problem("stiffness_compliance_n_per_mm", n_per_mm).map_or(Ok(n_per_mm), Err)
 }
 
 /// Parses a setting, `KEY=VALUE`.
 pub(crate) fn setting(text: &str) -> Result<(String, f64), String> {
-    let parts = text.split_once('=').map(|(key, value)| (key.trim(), value.trim().parse()));
-    match parts {
+    match text.split_once('=').map(|(key, value)| (key.trim(), value.trim().parse())) {
         Some((key, Ok(value))) if !key.is_empty() => Ok((key.to_owned(), value)),
         _ => Err("a setting is KEY=NUMBER, as in task.strategy.tilt_deg=8".to_owned()),
     }

@@ -222,8 +222,7 @@ impl FingerModelRequest {
     /// requires computed fingers.
     fn file(&self, space: Option<&Space>) -> Result<Option<Source>, Failure> {
         let shape = |p: &&Variable| is_shape(&p.key);
-        let shaped = space.and_then(|space| space.parameters.iter().find(shape));
-        match (self.kind, shaped) {
+        match (self.kind, space.and_then(|space| space.parameters.iter().find(shape))) {
             (Some(FingerModelKind::Paper), Some(Variable { key, .. })) => Err(Failure::usage(
                 format!("the space sets {key}, which needs --finger-model computed"),
             )),

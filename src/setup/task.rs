@@ -92,8 +92,7 @@ impl TaskCheck {
         let problems = problems(&task);
         let nominal = match problems.is_empty() {
             true => {
-                let robot = robot(&with.name)?;
-                let (finger, trial) = nominal_start(&task, &robot, with.engine, stop)?;
+                let (finger, trial) = nominal_start(&task, &robot(&with.name)?, with.engine, stop)?;
                 let explanation = nominal::explain(&task, &trial);
                 Some((finger, trial, explanation))
             }
@@ -154,8 +153,7 @@ pub(crate) fn nominal_recording(
     let rig = EngineKind::default().rig(task, robot, &shaped, 1.0)?;
     let recording = rig.record(Grasp { stop, ..Grasp::of(&shaped) }, 0.0);
     not_stopped(stop)?;
-    let recording = recording.ok_or_else(|| Failure::running("the engine records no trials"))?;
-    Ok((shaped, recording))
+    Ok((shaped, recording.ok_or_else(|| Failure::running("the engine records no trials"))?))
 }
 
 /// Returns the shipped measured finger of medium stiffness, and the same finger with the finger model of a task.

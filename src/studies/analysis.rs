@@ -94,15 +94,13 @@ impl Ended {
         let maps = MAPPED.len() as f64 * cost::MAP;
         let cost = f64::from(levers_missing) * cost::LEVERS + f64::from(maps_missing) * maps;
         context.begin(cost + f64::from(robots_missing) * cost::WALKED);
-        let engine = &subject.provenance.engine.name;
-        let setup = Setup::from_inputs(&record.inputs(dir)?, engine)?;
+        let setup = Setup::from_inputs(&record.inputs(dir)?, &subject.provenance.engine.name)?;
         let design = &subject.design;
         let stiffness = setup.evaluator.predict(design)?;
         let scenario = &setup.evaluator.scenario(setup.only_task()?, design, stiffness)?;
         self.run.pool()?.install(|| {
             if levers_missing {
-                let span = answer.spread_mm;
-                let levers = levers(&setup, (design, None), span, context)?;
+                let levers = levers(&setup, (design, None), answer.spread_mm, context)?;
                 subject.write(dir, LEVERS, &levers)?;
                 found.levers = Some(levers);
             }

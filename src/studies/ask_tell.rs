@@ -149,8 +149,7 @@ impl AskTellStudy {
     pub fn progress(&self) -> (usize, u64, String) {
         let study = &self.open.study;
         let done = study.evaluations.len();
-        let expected = study.config.expected_evaluations().max(done as u64);
-        (done, expected, self.best_so_far.best())
+        (done, study.config.expected_evaluations().max(done as u64), self.best_so_far.best())
     }
 
     /// Returns the command that resumes the study, with its progress.
@@ -198,8 +197,7 @@ fn set_up(work: &Work) -> Result<Arc<Setup>, Failure> {
 pub fn perform(bytes: &[u8], worker: &str, stop: &AtomicBool) -> Result<Vec<u8>, Failure> {
     // One thread, since the caller has a worker for each processor; and a new one, since a forked process
     // lacks the threads of the shared pool.
-    let alone = RunRequest { threads: Some(1), ..RunRequest::default() }.pool()?;
-    alone.install(|| {
+    RunRequest { threads: Some(1), ..RunRequest::default() }.pool()?.install(|| {
         let work = Work::decode(bytes).map_err(Failure::input)?;
         let setup = set_up(&work)?;
         work.check_worker(&setup.provenance(), worker).map_err(Failure::input)?;

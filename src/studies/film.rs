@@ -71,8 +71,7 @@ fn pair(
         return Ok(None);
     }
     let evaluator = &setup.evaluator;
-    let stiffness = evaluator.predict(design)?;
-    let scenario = &evaluator.scenario(template, design, stiffness)?;
+    let scenario = &evaluator.scenario(template, design, evaluator.predict(design)?)?;
     let rig = evaluator.rig(scenario, measured.taught, 1.0)?;
     let grasp = Grasp { stop, ..Grasp::of(&scenario.finger) };
     let record = |step| rig.record(grasp, offset(step));

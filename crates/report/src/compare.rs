@@ -279,8 +279,7 @@ fn draw(area: &Area<'_>, comparison: &Comparison, title: &str) -> DrawResult {
         line(&mut chart, quartile(group, 1), colour.rgb.stroke_width(3), label)?;
     }
     let target = vec![(0.0, comparison.target_mm), (longest, comparison.target_mm)];
-    let label = format!("best known - {TOLERANCE_MM} mm");
-    line(&mut chart, target, MUTED.rgb.stroke_width(1), label)?;
+    line(&mut chart, target, MUTED.rgb.stroke_width(1), format!("best known - {TOLERANCE_MM} mm"))?;
     legend(&mut chart, SeriesLabelPosition::LowerRight)
 }
 

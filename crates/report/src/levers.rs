@@ -58,8 +58,7 @@ pub fn text(levers: &Levers) -> String {
         });
         [name.to_owned(), interval, format!("{low:.1} .. {high:.1}"), format!("{span_mm:.1}")]
     });
-    let head = ["lever", "from .. now .. to", "range there, mm", "span, mm"];
-    text += &text_table(3, head, rows);
+    text += &text_table(3, ["lever", "from .. now .. to", "range there, mm", "span, mm"], rows);
     let left_out = match &levers.left_out[..] {
         [] => String::new(),
         names => format!("; not evaluated: {}", names.join(", ")),

@@ -45,8 +45,7 @@ impl Cache {
     /// Returns the key of the evaluation that `inputs`, robot and engine determine. `Debug` of the inputs
     /// must contain all of them, with numbers that read back to the same bits.
     pub fn key(&self, inputs: &impl Debug) -> String {
-        let text = format!("{}inputs {inputs:?}\n", self.context);
-        sha256_hex(text.as_bytes())
+        sha256_hex(format!("{}inputs {inputs:?}\n", self.context).as_bytes())
     }
 
     /// Returns the evaluation with this key, if the cache has an undamaged one.

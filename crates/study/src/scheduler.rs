@@ -157,8 +157,7 @@ impl Scheduler {
                 false => Vec::new(),
             };
             if !proposals.is_empty() {
-                let designs = proposals.iter().map(|p| (p.number, p.design.clone()));
-                self.evaluating.extend(designs);
+                self.evaluating.extend(proposals.iter().map(|p| (p.number, p.design.clone())));
                 return Ok(Next::Evaluate(proposals));
             }
             if !self.evaluating.is_empty() {
@@ -309,9 +308,10 @@ impl Scheduler {
     fn proposals(&self, study: &Study) -> Vec<Proposal> {
         let limit = Self::limit(study) as u64;
         let within = self.open.iter().filter(|(number, _)| **number < limit);
-        let proposal = |(&number, (point, told)): (&u64, &(GridPoint, usize))| {
-            let design = study.config.space.design(point);
-            Proposal { number, design, race: study.race(*told) }
+        let proposal = |(&number, (point, told)): (&u64, &(GridPoint, usize))| Proposal {
+            number,
+            design: study.config.space.design(point),
+            race: study.race(*told),
         };
         within.map(proposal).collect()
     }

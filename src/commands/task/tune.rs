@@ -86,8 +86,7 @@ impl command::Request for Request {
         if let Some(problem) = problems(&file.task).first() {
             let (file, key, text) = (&file.source.file, &problem.key, &problem.problem);
             let more = "`optimize task check` lists the accepted values";
-            let problem = format!("{text}; {more}");
-            return Err(Failure::task(Place::file(file).key(key).fault(problem)));
+            return Err(Failure::task(Place::file(file).key(key).fault(format!("{text}; {more}"))));
         }
         let robot = robot(&self.robot.name)?;
         let tuner = self.tuner(&file.task, &robot, stop);
@@ -299,8 +298,7 @@ fn text(done: &TunedTask<'_>) -> String {
             );
             all.push(line("chosen", text));
             all.extend(tilt_text(tuned).map(|why| line("", why)));
-            let wider = |step: &Step| step.tried.score > best.tried.score;
-            if tuned.steps.iter().any(wider) {
+            if tuned.steps.iter().any(|step| step.tried.score > best.tried.score) {
                 let why = format!(
                     "no other strategy checked has {INDIFFERENCE_MM} mm more with the socket turned, too"
                 );

@@ -174,8 +174,7 @@ fn density(text: &str) -> Result<f64, String> {
 fn direction(text: &str) -> Result<f64, String> {
     let degrees = number(text)?;
     let radians = wrong_unit::angle(degrees, [0.0, 90.0], 1.0).map(|radians| radians.join(" "));
-    let problem = radians.or_else(|| numbers::problem(DIRECTION_KEY, degrees));
-    problem.map_or(Ok(degrees), Err)
+    radians.or_else(|| numbers::problem(DIRECTION_KEY, degrees)).map_or(Ok(degrees), Err)
 }
 
 /// Parses a length, mm.

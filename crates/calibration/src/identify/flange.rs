@@ -47,6 +47,5 @@ pub fn identified_robot(own: &Robot, flange: &[Option<Flange>; 3]) -> (Robot, Op
         *stiffness *= libm::exp(log);
     }
     servo.rotational_stiffness = base.rotational_stiffness.map(|k| k * libm::exp(common));
-    let name = "identified".to_owned();
-    (Robot { name, drive: Drive::Servo(servo), ..own.clone() }, Some(sd))
+    (Robot { name: "identified".to_owned(), drive: Drive::Servo(servo), ..own.clone() }, Some(sd))
 }

@@ -97,8 +97,7 @@ impl Frame {
         let rotation = UnitQuaternion::from_scaled_axis(turn);
         let tilt = self.base.rotation.inverse() * rotation * self.upright.inverse();
         let turned = tilt.scaled_axis();
-        let askew = turned.yz().norm();
-        if askew > MAX_ROTATION || turned.x.abs() > PI / 2.0 {
+        if turned.yz().norm() > MAX_ROTATION || turned.x.abs() > PI / 2.0 {
             let [x, y, z]: [f64; 3] = turned.map(f64::to_degrees).into();
             return Err(format!(
                 "the tool is rotated by ({x:.0}, {y:.0}, {z:.0}) degrees about the task's axes from \

@@ -126,8 +126,7 @@ impl Logged {
             let [measured, simulated] =
                 [&self.curves.force, &replayed.force].map(|force| mean(&force[bin.clone()]));
             let (a, b) = (measured.norm(), simulated.norm());
-            let differ = a.min(b) < NO_CONTACT_N && a.max(b) > CONTACT_N;
-            apart = if differ { apart + 1 } else { 0 };
+            apart = if a.min(b) < NO_CONTACT_N && a.max(b) > CONTACT_N { apart + 1 } else { 0 };
             over = apart >= APART_BINS;
             let offsets = offsets.iter().take(self.data_per_bin() / 6);
             let poses = offsets.map(|offsets| mean(&offsets[bin.clone()]));
@@ -161,8 +160,7 @@ impl Identification<'_> {
             let rig = evaluator.rig(&scenario, None, step_factor)?;
             let grasp = Grasp { stop: self.stop, ..Grasp::of(&scenario.finger) };
             let trajectories: Vec<_> = alike.iter().map(|logged| &logged.trajectory).collect();
-            let followed = rig.follow(grasp, &trajectories);
-            all.extend(followed.into_iter().map(|(trial, samples)| {
+            all.extend(rig.follow(grasp, &trajectories).into_iter().map(|(trial, samples)| {
                 (Curves::of_samples(&samples, self.tool_mass), trial.outcome)
             }));
         }

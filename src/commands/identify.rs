@@ -131,13 +131,10 @@ fn undetermined(remarks: &[Remark]) -> Failure {
 /// Returns the identified cell as a cell file.
 fn cell(setup: &Setup, found: &Identified, logs: usize) -> Priors {
     let task = setup.task_names().concat();
-    Priors {
-        name: "cell".to_owned(),
-        description: format!("identified from {logs} logs on {task}"),
-        task: Some(task),
-        robot: robot_file(setup, &found.robot),
-        parameters: found.unknowns.iter().map(|one| one.posterior.clone()).collect(),
-    }
+    let description = format!("identified from {logs} logs on {task}");
+    let robot = robot_file(setup, &found.robot);
+    let parameters = found.unknowns.iter().map(|one| one.posterior.clone()).collect();
+    Priors { name: "cell".to_owned(), description, task: Some(task), robot, parameters }
 }
 
 /// Returns the identified robot as a robot file: a compliant flange, or the input file if it is unchanged.

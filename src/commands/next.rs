@@ -106,12 +106,8 @@ impl command::Request for Request {
             }
         };
         let failed = subject.not_measurable();
-        let fingers = Fingers {
-            designs: &subject.designs,
-            printable: &among,
-            failed: &failed,
-            printed: &subject.printed(),
-        };
+        let (designs, printed) = (&subject.designs, &subject.printed());
+        let fingers = Fingers { designs, printable: &among, failed: &failed, printed };
         let posterior = layout.posterior(&benches, &settings);
         let mut random = stream(settings.seed, 0, "next");
         let (count, cost_mm) = (usize::from(self.count), self.print_cost_mm);

@@ -165,14 +165,8 @@ impl FingerRequest {
             }
         };
         let scenario = evaluator.scenario(template, &design, stiffness)?;
-        Ok(ChosenFinger {
-            scenario,
-            cell: evaluator.cell.clone(),
-            finger_model: evaluator.fingers.kind(),
-            design,
-            set,
-            given,
-        })
+        let (cell, finger_model) = (evaluator.cell.clone(), evaluator.fingers.kind());
+        Ok(ChosenFinger { scenario, cell, finger_model, design, set, given })
     }
 
     /// Returns the settings of `--set`; values of keys of the space must lie within its bounds.

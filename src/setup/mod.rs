@@ -126,23 +126,17 @@ impl Setup {
         if own.fingers.kind() != FingerModelKind::Paper {
             return None;
         }
-        let evaluator = Evaluator {
-            surrogate: Arc::clone(&own.surrogate),
-            fingers: self.fingers.computed(),
-            templates: own.templates.clone(),
-            robot: own.robot.clone(),
-            engine: own.engine,
-            cell: own.cell.clone(),
-        };
+        let (surrogate, fingers) = (Arc::clone(&own.surrogate), self.fingers.computed());
+        let (templates, robot, engine) = (own.templates.clone(), own.robot.clone(), own.engine);
+        let cell = own.cell.clone();
+        let evaluator = Evaluator { surrogate, fingers, templates, robot, engine, cell };
         check_compatible(&evaluator, &self.space, SPACE).ok()?;
         Some(evaluator)
     }
 
     /// Returns the setup with the parameters of this cell, including those of its robot.
     pub(crate) fn with_cell(mut self, source: Source, cell: Priors) -> Result<Self, Failure> {
-        for row in &cell.parameters {
-            self.evaluator.robot.change(row, row.middle());
-        }
+        cell.parameters.iter().for_each(|row| self.evaluator.robot.change(row, row.middle()));
         self.evaluator.cell = Some(cell);
         self.evaluator.check_cell(&source.file)?;
         self.inputs.insert(CELL.to_owned(), source.text);

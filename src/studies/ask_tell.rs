@@ -110,14 +110,10 @@ impl AskTellStudy {
     fn assign(&mut self, proposal: Proposal) -> Result<(u64, Vec<u8>), Failure> {
         let OpenStudy { study, setup, .. } = &self.open;
         let (number, goals) = (proposal.number, study.config.goals());
-        let work = Work {
-            proposal,
-            seed: study.config.seed,
-            success_rate: goals.needs(Measure::SuccessRate),
-            robust_range: goals.needs(Measure::RobustRange),
-            provenance: study.provenance().clone(),
-            inputs: setup.inputs.clone(),
-        };
+        let (seed, success_rate) = (study.config.seed, goals.needs(Measure::SuccessRate));
+        let robust_range = goals.needs(Measure::RobustRange);
+        let (provenance, inputs) = (study.provenance().clone(), setup.inputs.clone());
+        let work = Work { proposal, seed, success_rate, robust_range, provenance, inputs };
         let bytes = work.encode().map_err(|error| Failure::running(error.to_string()))?;
         self.evaluating.insert(number, work);
         Ok((number, bytes))

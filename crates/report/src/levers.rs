@@ -23,10 +23,7 @@ fn bars<'a>(levers: &'a Levers) -> Vec<Bar<'a>> {
     let bar = |lever: &'a Lever| {
         let end = |end: usize| {
             let amount = lever.amount([lever.low, lever.high][end]);
-            match lever.ends[end] {
-                Some(range) => (range, amount),
-                None => (0.0, format!("none at {amount}")),
-            }
+            lever.ends[end].map_or((0.0, format!("none at {amount}")), |range| (range, amount))
         };
         let (span_mm, ends) = (lever.span_mm(levers.base), [end(0), end(1)]);
         Bar { name: &lever.name, span_mm, ends, lever: Some(lever) }

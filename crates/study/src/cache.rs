@@ -34,12 +34,8 @@ pub struct Cache {
 impl Cache {
     /// Returns the cache in `dir`, which need not exist.
     pub fn new(dir: &Path, robot: &Robot, engine: &EngineRecord) -> Self {
-        Cache {
-            dir: dir.to_owned(),
-            context: format!("sources {SIMULATION_SOURCES}\nengine {engine:?}\nrobot {robot:?}\n"),
-            hits: AtomicU64::new(0),
-            problem: OnceLock::new(),
-        }
+        let context = format!("sources {SIMULATION_SOURCES}\nengine {engine:?}\nrobot {robot:?}\n");
+        Cache { dir: dir.to_owned(), context, hits: AtomicU64::new(0), problem: OnceLock::new() }
     }
 
     /// Returns the key of the evaluation that `inputs`, robot and engine determine. `Debug` of the inputs

@@ -121,12 +121,9 @@ pub struct Scheduler {
 impl Scheduler {
     /// Returns the scheduler of a study, to be used with a new optimizer.
     pub fn new(study: &Study) -> Self {
-        Scheduler {
-            batch: study.config.batch as usize,
-            early_stopping: study.config.early_stopping(),
-            settled: study.config.settles && study.settled(),
-            ..Scheduler::default()
-        }
+        let (batch, early_stopping) = (study.config.batch as usize, study.config.early_stopping());
+        let settled = study.config.settles && study.settled();
+        Scheduler { batch, early_stopping, settled, ..Scheduler::default() }
     }
 
     /// Returns the next step.

@@ -50,13 +50,9 @@ pub fn flange(all: &[Curves], axis: usize) -> Option<Flange> {
     let jackknife = if n > 1.0 { ((n - 1.0) / n * squares).sqrt() } else { f64::INFINITY };
     let [stiffness, damping, mass] = fit.terms;
     let known = stiffness > 0.0 && jackknife < stiffness;
-    known.then_some(Flange {
-        stiffness: Estimate { mean: stiffness, sd: jackknife.max(MIN_RELATIVE_SD * stiffness) },
-        damping,
-        mass,
-        delay_s: delay as f64 * STEP_S,
-        explained: fit.explained,
-    })
+    let stiffness = Estimate { mean: stiffness, sd: jackknife.max(MIN_RELATIVE_SD * stiffness) };
+    let delay_s = delay as f64 * STEP_S;
+    known.then_some(Flange { stiffness, damping, mass, delay_s, explained: fit.explained })
 }
 
 /// Returns the fraction of the variance of the force that a compliant flange explains, summed over the axes of the

@@ -79,13 +79,8 @@ impl Frame {
         }
         // Robots state the centre of mass beside the mass, so it is accepted; forces do not depend on it.
         check.each("tool_centre_mm", raw.tool_centre_mm, Check::distance)?;
-        Ok(Frame {
-            base: Isometry3::from_parts(Translation3::from(origin * MM), rotation),
-            upright,
-            sign,
-            tool_mass: mass,
-            compensated,
-        })
+        let base = Isometry3::from_parts(Translation3::from(origin * MM), rotation);
+        Ok(Frame { base, upright, sign, tool_mass: mass, compensated })
     }
 
     /// Converts a pose in the base (m; axis-angle, rad) to the task's frame.

@@ -61,16 +61,10 @@ impl Logged {
         let curves = Curves::of_log(&log, bias(&run.log));
         let since = touched_s - log.samples[0].time_s;
         let trajectory = curves.trajectory()?;
-        Some(Logged {
-            file: run.log.file.clone(),
-            design: run.design.clone(),
-            offset: run.offset,
-            outcome,
-            touch: (since / STEP_S) as usize,
-            push: (trajectory.push_start() / STEP_S) as usize,
-            curves,
-            trajectory,
-        })
+        let (file, design) = (run.log.file.clone(), run.design.clone());
+        let touch = (since / STEP_S) as usize;
+        let push = (trajectory.push_start() / STEP_S) as usize;
+        Some(Logged { file, design, offset: run.offset, outcome, touch, push, curves, trajectory })
     }
 
     /// Returns the attempt with the measured trajectory of the TCP as the commanded one.

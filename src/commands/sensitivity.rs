@@ -58,9 +58,8 @@ impl Request {
             setup = setup.with_named_uncertainty(&self.uncertainty)?;
         }
         if setup.uncertainty.as_ref().is_some_and(|uncertainty| uncertainty.cell.is_some()) {
-            return Err(Failure::usage(
-                "--uncertainty takes errors here, not a cell; give the cell with --cell",
-            ));
+            let problem = "--uncertainty takes errors here, not a cell; give the cell with --cell";
+            return Err(Failure::usage(problem));
         }
         let template = setup.only_task()?;
         let errors = setup.uncertainty.as_ref().map(|uncertainty| &uncertainty.errors);

@@ -229,20 +229,14 @@ impl Evaluated {
         );
         rest.push(("failures".to_owned(), failures));
         rest.push(("peak force".to_owned(), number(evaluation.peak_force_n, 1, "N")));
-        let mating = words::mating_force(task.largest_mating_force());
-        rest.push(("mating force".to_owned(), mating));
+        rest.push(("mating force".to_owned(), words::mating_force(task.largest_mating_force())));
         rest.extend(lines::taught(evaluation.taught.map(grid_mm)));
         rest.extend(lines::drawn(evaluation));
         let by_ribs = |computed| lines::by_ribs(computed, (0, evaluation));
         rest.extend(self.computed.as_ref().and_then(by_ribs));
         rest.extend(self.disagreement().map(|remark| (String::new(), remark.to_owned())));
-        let text = format!(
-            "{}{}{}time          {:.1} s\n",
-            chosen.text(),
-            layout::lines(rest),
-            self.bands.as_ref().map(bands_text).unwrap_or_default(),
-            self.wall_s
-        );
-        layout::wrapped(&text)
+        let (chosen, rest) = (chosen.text(), layout::lines(rest));
+        let bands = self.bands.as_ref().map(bands_text).unwrap_or_default();
+        layout::wrapped(&format!("{chosen}{rest}{bands}time          {:.1} s\n", self.wall_s))
     }
 }

@@ -158,14 +158,10 @@ impl Advised {
             let fingers = self.not_measurable.iter().map(design).collect::<Vec<_>>().join("; ");
             text += &format!("printed, not measurable: {fingers}\n");
         }
-        for (i, print) in advice.next.iter().enumerate() {
-            text += &format!(
-                "{}. {}\n   expected {}: {}\n",
-                i + 1,
-                design(&print.design),
-                interval(print.expected_mm, print.low_mm, print.high_mm),
-                print.reason
-            );
+        for (number, print) in (1..).zip(&advice.next) {
+            let finger = design(&print.design);
+            let expected = interval(print.expected_mm, print.low_mm, print.high_mm);
+            text += &format!("{number}. {finger}\n   expected {expected}: {}\n", print.reason);
             if !print.needs_print {
                 text +=
                     "   no print: this finger was printed; set the other numbers and measure it\n";

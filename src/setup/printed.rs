@@ -101,10 +101,8 @@ pub(crate) fn predicted_stiffness(
 fn best(dir: &Path) -> Result<(Design, Option<FingerFile>, Option<Prediction>), Failure> {
     let record = StudyRecord::load(dir)?;
     let Some(best) = Answer::of(&record).verdict.finger().cloned() else {
-        return Err(Failure::usage(format!(
-            "{}: the study recommends no design; give --density and --direction",
-            dir.display()
-        )));
+        let problem = "the study recommends no design; give --density and --direction";
+        return Err(Failure::usage(format!("{}: {problem}", dir.display())));
     };
     let found = record.current().iter().find(|recorded| recorded.design == best);
     Ok((best.clone(), record.finger.clone(), found.map(|recorded| recorded.stiffness)))

@@ -63,12 +63,8 @@ pub fn bands_text((bands, impossible): &(Bands, usize)) -> String {
         [] => format!("all {} offsets tried insert in every repeat", bands.tried_inside),
         unsure => {
             let at: Vec<String> = unsure.iter().map(|mm| format!("{mm:+.1}")).collect();
-            let tried = bands.tried_inside;
-            format!(
-                "{} of {tried} offsets tried do not insert in every repeat: {} mm",
-                unsure.len(),
-                at.join(", ")
-            )
+            let (count, tried, at) = (unsure.len(), bands.tried_inside, at.join(", "));
+            format!("{count} of {tried} offsets tried do not insert in every repeat: {at} mm")
         }
     };
     let firm = bands.firm_mm().map_or("unknown".to_owned(), |[from, to]| {

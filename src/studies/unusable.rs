@@ -39,14 +39,10 @@ pub(crate) fn check(
         StartRule::Given => ". `--start taught` moves it to where the finger inserts",
         StartRule::Taught => "",
     };
+    let (file, remedy) = (file.display(), remedy(trial.outcome, trial.robot_stopped));
     Err(Failure::running(format!(
         "no design of the study inserts at the nominal start of {}: evaluation {} ends with {class}{phase}, \
-         at depth {:.2} mm and tilt {:.2} deg; {} shows it. {}{teach}",
-        scenario.task.name,
-        nearest.index,
-        trial.depth_mm,
-        trial.tilt_deg,
-        file.display(),
-        remedy(trial.outcome, trial.robot_stopped)
+         at depth {:.2} mm and tilt {:.2} deg; {file} shows it. {remedy}{teach}",
+        scenario.task.name, nearest.index, trial.depth_mm, trial.tilt_deg
     )))
 }

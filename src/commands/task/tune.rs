@@ -291,11 +291,8 @@ fn text(done: &TunedTask<'_>) -> String {
         Some(after) => {
             let best = tuned.best();
             let turned = turned_text(best);
-            let text = format!(
-                "{}: {} about the written start{turned}",
-                best.change,
-                ranges(&after.windows)
-            );
+            let ranges = ranges(&after.windows);
+            let text = format!("{}: {ranges} about the written start{turned}", best.change);
             all.push(line("chosen", text));
             all.extend(tilt_text(tuned).map(|why| line("", why)));
             if tuned.steps.iter().any(|step| step.tried.score > best.tried.score) {

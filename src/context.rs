@@ -134,8 +134,7 @@ impl<'a> Context<'a> {
     /// # Errors
     /// If the command was not started from a terminal.
     pub fn program(&self) -> Result<clap::Command, Failure> {
-        let terminal = self.terminal.as_ref();
-        let terminal = terminal.ok_or_else(|| {
+        let terminal = self.terminal.as_ref().ok_or_else(|| {
             Failure::usage("this command describes the command line; run it as `optimize`")
         })?;
         Ok((terminal.program)())

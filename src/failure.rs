@@ -5,6 +5,7 @@ use clap::error::{ContextKind, ContextValue, ErrorKind};
 use input::{InputError, Place, Placed, RequestError};
 use insertion::DesignError;
 use insertion::stiffness::SurrogateError;
+use insertion::trial::run::RigError;
 use report::ReportError;
 use std::error::Error;
 use std::fmt;
@@ -141,8 +142,7 @@ pub fn within<T: PartialOrd + fmt::Display>(
     match number.into() {
         Some(number) if !range.contains(&number) => {
             let (least, most) = (range.start(), range.end());
-            let problem = format!("{option} {number}: must lie between {least} and {most}");
-            Err(Failure::usage(problem))
+            Err(Failure::usage(format!("{option} {number}: must lie between {least} and {most}")))
         }
         _ => Ok(()),
     }
@@ -158,6 +158,24 @@ impl From<StudyError> for Failure {
         let bad_input = error.is_bad_input();
         let error = anyhow::Error::new(error);
         if bad_input { Failure::Input(error) } else { Failure::Run(error) }
+    }
+}
+
+impl From<InputError> for Failure {
+    fn from(error: InputError) -> Self {
+        Failure::input(error)
+    }
+}
+
+impl From<DesignError> for Failure {
+    fn from(error: DesignError) -> Self {
+        Failure::input(error)
+    }
+}
+
+impl From<RigError> for Failure {
+    fn from(error: RigError) -> Self {
+        Failure::input(error)
     }
 }
 

@@ -70,7 +70,7 @@ impl Project {
     fn read(folder: &Path) -> Result<Self, Failure> {
         let path = folder.join(PROJECT_FILE);
         let Source { file, text } = Source::read("project file", &path).map_err(Failure::input)?;
-        let table: toml::Table = input::read(&text, &file).map_err(Failure::input)?;
+        let table: toml::Table = input::read(&text, &file)?;
         let mut project = Project { file, text, settings: Settings::default() };
         let fault = |(key, value): (&String, _)| Some(project.fault(key, key_problem(key, value)?));
         let mut faults: Vec<Failure> = table.iter().filter_map(fault).collect();
@@ -79,7 +79,7 @@ impl Project {
             let text = faults.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n");
             return Err(Failure::input(RequestError { place: first.place(), text }));
         }
-        project.settings = input::read(&project.text, &project.file).map_err(Failure::input)?;
+        project.settings = input::read(&project.text, &project.file)?;
         let Settings { task, robot, cell, measurements, space, .. } = &mut project.settings;
         for value in [task, robot, cell, measurements, space].into_iter().flatten() {
             let each = value.split(',').map(|name| beside(folder, name.trim()));
@@ -101,8 +101,7 @@ impl Project {
     /// # Errors
     /// If it does not.
     pub(crate) fn check_cell(&self) -> Result<(), Failure> {
-        let missing = self.settings.cell.iter().find(|file| !Path::new(file).is_file());
-        missing.map_or(Ok(()), |file| {
+        self.settings.cell.iter().find(|file| !Path::new(file).is_file()).map_or(Ok(()), |file| {
             let made = format!("`optimize identify --out {}` writes a cell", shell_word(file));
             Err(self.fault("cell", format!("{file} does not exist; {made}")))
         })
@@ -143,8 +142,7 @@ impl Project {
         // the command line takes precedence.
         let cell_option = if measured && takes("priors") { "priors" } else { "cell" };
         let option = ["cell", "priors"].into_iter().find(|option| given(option));
-        let used = takes(cell_option) && name != "identify" && option.is_none();
-        let cell = cell.filter(|_| used);
+        let cell = cell.filter(|_| takes(cell_option) && name != "identify" && option.is_none());
         let cell = unless(given("robot").then(|| "--robot".to_owned()), "cell", cell);
         cell.iter().try_for_each(|_| self.check_cell())?;
         let with_robot = cell.as_ref().map(|cell| format!("cell {cell}"));

@@ -91,7 +91,7 @@ impl Arguments {
 fn steps(task: Task, robot: &Robot, engine: Box<dyn Engine>) -> Result<TaskSettings, Failure> {
     let half = engine.with_half_step();
     let setting = |name: &str, engine| {
-        let rig = EngineRig::new(task.clone(), robot, engine).map_err(Failure::input)?;
+        let rig = EngineRig::new(task.clone(), robot, engine)?;
         Ok::<_, Failure>(Setting { name: name.into(), rig: Arc::new(rig), search: Search::Strides })
     };
     let settings = [setting("production", engine)?, setting("half the step", half)?];
@@ -100,7 +100,7 @@ fn steps(task: Task, robot: &Robot, engine: Box<dyn Engine>) -> Result<TaskSetti
 
 /// Returns the settings of a task with the exhaustive and with the coarse-to-fine search.
 fn searches(task: Task, robot: &Robot, engine: Box<dyn Engine>) -> Result<TaskSettings, Failure> {
-    let rig = Arc::new(EngineRig::new(task.clone(), robot, engine).map_err(Failure::input)?);
+    let rig = Arc::new(EngineRig::new(task.clone(), robot, engine)?);
     let setting = |(name, search)| Setting { name: String::from(name), rig: rig.clone(), search };
     let settings = [("walk", Search::Walk), ("strides", Search::Strides)].map(setting);
     Ok(TaskSettings { task, settings })

@@ -36,8 +36,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let robot = files::robot(DEFAULT_ROBOT)?;
     let settings = |task: Task| {
         let setting = |engine: EngineKind| {
-            let rig = engine.rig(&task, &robot, &FingerSource::Paper.example(&task), 1.0);
-            let rig = rig.map_err(Failure::input)?.into();
+            let rig = engine.rig(&task, &robot, &FingerSource::Paper.example(&task), 1.0)?.into();
             Ok::<_, Failure>(Setting { name: engine.name(), rig, search: Search::Strides })
         };
         let [first, second] = kinds.map(setting);

@@ -93,8 +93,7 @@ impl StudyRequest {
     /// Creates the request for a study with these keywords.
     #[new]
     fn new(keywords: &str) -> PyResult<Self> {
-        let request = request(&read(keywords)?).map_err(exception)?;
-        Ok(StudyRequest::of(AnyStudy::asked(request)))
+        Ok(StudyRequest::of(AnyStudy::asked(request(&read(keywords)?).map_err(exception)?)))
     }
 
     /// Creates the request to continue the study in a folder with these keywords.
@@ -150,8 +149,7 @@ impl Recorded {
     #[new]
     fn new(py: Python<'_>, folder: PathBuf) -> PyResult<Self> {
         let read = py.allow_threads(|| StudyRecord::load(&folder));
-        let record = read.map_err(|error| exception(error.into()))?;
-        Ok(Recorded { folder, record })
+        Ok(Recorded { folder, record: read.map_err(|error| exception(error.into()))? })
     }
 
     /// Returns the configuration of `study.toml` as JSON.
@@ -219,10 +217,7 @@ impl AskTellStudy {
                 let bytes = |(proposal, work): (u64, Vec<u8>)| (proposal, PyBytes::new(py, &work));
                 (work.into_iter().map(bytes).collect(), None)
             }
-            NextStep::Finish(ending) => {
-                let ending = json!(ending).as_str().map(str::to_owned);
-                (Vec::new(), ending)
-            }
+            NextStep::Finish(ending) => (Vec::new(), json!(ending).as_str().map(str::to_owned)),
         })
     }
 

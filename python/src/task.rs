@@ -38,8 +38,7 @@ pub fn task(name: &str) -> PyResult<(String, String)> {
 /// Checks a task file and returns its fields as JSON.
 #[pyfunction]
 pub fn task_fields(file: String, text: String) -> PyResult<String> {
-    let fields = TaskFile::fields(Source { file, text }).map_err(exception)?;
-    Ok(json!(fields).to_string())
+    Ok(json!(TaskFile::fields(Source { file, text }).map_err(exception)?).to_string())
 }
 
 /// Returns the text of a task file with these fields, given as JSON, and checks it.

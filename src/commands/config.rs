@@ -26,8 +26,7 @@ impl command::Request for Request {
         if let Some(set) = set.as_object_mut() {
             set.retain(|_, value| !value.is_null());
         }
-        let value = json!({"file": file, "settings": set});
-        Ok(Output::new(text(file.as_deref(), settings), value))
+        Ok(Output::new(text(file.as_deref(), settings), json!({"file": file, "settings": set})))
     }
 }
 
@@ -66,6 +65,5 @@ fn text(file: Option<&str>, settings: Settings) -> String {
         };
         (key.to_owned(), text)
     });
-    let first = ("file".to_owned(), file.map_or(none, str::to_owned));
-    lines(std::iter::once(first).chain(rows))
+    lines(std::iter::once(("file".to_owned(), file.map_or(none, str::to_owned))).chain(rows))
 }

@@ -96,8 +96,7 @@ impl Request {
         let chosen = self.finger.choose(&setup)?;
         let measured = self.measured(&chosen)?;
         let clock = Instant::now();
-        let evaluation = setup.evaluator.simulate(&chosen.scenario, self.search(), &plan, stop);
-        let evaluation = evaluation.map_err(Failure::input)?;
+        let evaluation = setup.evaluator.simulate(&chosen.scenario, self.search(), &plan, stop)?;
         not_stopped(stop)?;
         let wall_s = clock.elapsed().as_secs_f64();
         let window = &evaluation.window;
@@ -158,8 +157,7 @@ impl Request {
         let Some(evaluator) = setup.by_ribs() else { return Ok(None) };
         let chosen = self.finger.choose_with(setup, &evaluator);
         let measured = chosen.and_then(|ChosenFinger { scenario, .. }| {
-            let found = evaluator.simulate_or_teach(&scenario, self.search(), stop);
-            found.map_err(Failure::input)
+            evaluator.simulate_or_teach(&scenario, self.search(), stop).map_err(Failure::input)
         });
         not_stopped(stop)?;
         Ok(Some(match measured {
@@ -231,20 +229,14 @@ impl Evaluated {
         );
         rest.push(("failures".to_owned(), failures));
         rest.push(("peak force".to_owned(), number(evaluation.peak_force_n, 1, "N")));
-        let mating = words::mating_force(task.largest_mating_force());
-        rest.push(("mating force".to_owned(), mating));
+        rest.push(("mating force".to_owned(), words::mating_force(task.largest_mating_force())));
         rest.extend(lines::taught(evaluation.taught.map(grid_mm)));
         rest.extend(lines::drawn(evaluation));
         let by_ribs = |computed| lines::by_ribs(computed, (0, evaluation));
         rest.extend(self.computed.as_ref().and_then(by_ribs));
         rest.extend(self.disagreement().map(|remark| (String::new(), remark.to_owned())));
-        let text = format!(
-            "{}{}{}time          {:.1} s\n",
-            chosen.text(),
-            layout::lines(rest),
-            self.bands.as_ref().map(bands_text).unwrap_or_default(),
-            self.wall_s
-        );
-        layout::wrapped(&text)
+        let (chosen, rest) = (chosen.text(), layout::lines(rest));
+        let bands = self.bands.as_ref().map(bands_text).unwrap_or_default();
+        layout::wrapped(&format!("{chosen}{rest}{bands}time          {:.1} s\n", self.wall_s))
     }
 }

@@ -73,15 +73,15 @@ impl command::Request for Request {
         }
         let set = Design(self.set.iter().cloned().collect());
         let file = finger_file(&self.finger)?;
-        let finger = file.with(&set).map_err(Failure::input)?;
+        let finger = file.with(&set)?;
         let [density, direction] = self.infill.required()?;
         let infill = infill(&Design::infill(density, direction), self.phase_mm);
-        let geometry = Geometry::new(&finger, &infill).map_err(Failure::input)?;
-        let computed = mechanics::compute(&geometry).map_err(Failure::input)?;
+        let geometry = Geometry::new(&finger, &infill)?;
+        let computed = mechanics::compute(&geometry)?;
         let mut design = Design::infill(density, direction);
         design.0.extend(set.0);
         let model = predicted_stiffness(&file.finger, &design)?;
-        let svg = picture::svg(&geometry, self.load_n).map_err(Failure::input)?;
+        let svg = picture::svg(&geometry, self.load_n)?;
         let value = json(&geometry, &computed, model.as_ref());
         let text = wrapped(&text(&geometry, &computed, model.as_ref()));
         Output::new(text, value).drawn(svg, self.svg.as_ref())
@@ -129,32 +129,24 @@ fn json(geometry: &Geometry, computed: &FingerStiffness, model: Option<&Predicti
 }
 
 fn text(geometry: &Geometry, computed: &FingerStiffness, model: Option<&Prediction>) -> String {
-    let (design, material) = (&geometry.design, &geometry.finger.material);
+    let (design, finger, first_mm) = (&geometry.design, &geometry.finger, first_rib_mm(geometry));
+    let [density, direction] = [design.density_percent, design.direction_deg];
+    let (material, modulus) = (&finger.material, finger.material.modulus / 1e9);
+    let (area, mass) = (geometry.area() / (MM * MM), geometry.mass() / GRAM);
     let model = model.map(|prediction| lines::stiffness(prediction)[0].1.clone());
     let model = model.unwrap_or_else(|| "not covered by the measured model".to_owned());
     let rows = [row("pad", &computed.pad), row("pad and roof", &computed.pad_and_roof)];
-    let cross = &computed.cross;
+    let (ribs, cross) = (text_table(1, PLANAR, rows), &computed.cross);
+    let in_x = cross.in_depth / N_PER_MM;
     format!(
-        "finger        {}, {} %, {}°, first rib at {} mm\n\
-         material      {}, {} GPa ({})\n\
-         area, mass    {:.1} mm2, {:.2} g\n\
+        "finger        {}, {density} %, {direction}°, first rib at {first_mm} mm\n\
+         material      {}, {modulus} GPa ({})\n\
+         area, mass    {area:.1} mm2, {mass:.2} g\n\
          stiffness     {model}\n\n\
-         from the ribs\n{}\n\
-         across        {:.1} N/mm in x, {:.2} Nm/rad about y, \
+         from the ribs\n{ribs}\n\
+         across        {in_x:.1} N/mm in x, {:.2} Nm/rad about y, \
          {:.2} about z\n",
-        geometry.finger.name,
-        design.density_percent,
-        design.direction_deg,
-        first_rib_mm(geometry),
-        material.name,
-        material.modulus / 1e9,
-        material.source,
-        geometry.area() / (MM * MM),
-        geometry.mass() / GRAM,
-        text_table(1, PLANAR, rows),
-        cross.in_depth / N_PER_MM,
-        cross.about_y,
-        cross.about_z,
+        finger.name, material.name, material.source, cross.about_y, cross.about_z
     )
 }
 

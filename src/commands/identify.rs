@@ -75,8 +75,8 @@ impl Request {
         let setup = self.setup.setup()?;
         let template = setup.only_task()?;
         let source = find("priors", PRIORS, &self.priors)?;
-        let priors = Priors::parse(&source.text, &source.file).map_err(Failure::input)?;
-        setup.evaluator.check_paths(&priors, &source.file).map_err(Failure::input)?;
+        let priors = Priors::parse(&source.text, &source.file)?;
+        setup.evaluator.check_paths(&priors, &source.file)?;
         let frame = self.frame.as_deref().map(|path| -> Result<Frame, Failure> {
             let source = Source::read("frame", path).map_err(Failure::input)?;
             Frame::parse(&source.text, &source.file).map_err(Failure::input)
@@ -99,16 +99,16 @@ impl Request {
             stop,
         };
         let file = self.runs.to_string_lossy();
-        let mut remarks = identification.remarks(&file).map_err(Failure::input)?;
+        let mut remarks = identification.remarks(&file)?;
         remarks.extend(assumed);
-        let found = identification.identify().map_err(Failure::input)?;
+        let found = identification.identify()?;
         not_stopped(stop)?;
         // Measured and simulated curves are shown even if no parameter is identified, but no cell is written.
         if !found.is_informative() && (self.out.is_some() || found.compared.is_empty()) {
             return Err(undetermined(&remarks));
         }
         remarks.extend(mount::remark(&file, &found.compared));
-        let cell = cell(&setup, &found, runs.len()).checked("the cell").map_err(Failure::input)?;
+        let cell = cell(&setup, &found, runs.len()).checked("the cell")?;
         let (task, runs) = (template.task.name.clone(), file.into_owned());
         let result = IdentificationResult { task, runs, remarks, found, cell };
         if let Some(path) = &self.out {
@@ -131,13 +131,10 @@ fn undetermined(remarks: &[Remark]) -> Failure {
 /// Returns the identified cell as a cell file.
 fn cell(setup: &Setup, found: &Identified, logs: usize) -> Priors {
     let task = setup.task_names().concat();
-    Priors {
-        name: "cell".to_owned(),
-        description: format!("identified from {logs} logs on {task}"),
-        task: Some(task),
-        robot: robot_file(setup, &found.robot),
-        parameters: found.unknowns.iter().map(|one| one.posterior.clone()).collect(),
-    }
+    let description = format!("identified from {logs} logs on {task}");
+    let robot = robot_file(setup, &found.robot);
+    let parameters = found.unknowns.iter().map(|one| one.posterior.clone()).collect();
+    Priors { name: "cell".to_owned(), description, task: Some(task), robot, parameters }
 }
 
 /// Returns the identified robot as a robot file: a compliant flange, or the input file if it is unchanged.

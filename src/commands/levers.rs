@@ -36,8 +36,7 @@ impl command::Request for Request {
         let setup = self.setup.setup()?;
         let chosen = self.finger.choose(&setup)?;
         let given = chosen.given.then_some(chosen.scenario.stiffness);
-        let finger = (&chosen.design, given);
-        let levers = levers(&setup, finger, None, context)?;
+        let levers = levers(&setup, (&chosen.design, given), None, context)?;
         let (svg, text) = (output::svg(&levers)?, layout::wrapped(&output::text(&levers)));
         Output::new(text, levers_json(&levers)).drawn(svg, self.svg.as_ref())
     }
@@ -57,7 +56,7 @@ pub(crate) fn levers(
     };
     let space = &setup.space;
     let analysis = LeverAnalysis { evaluator, template, space, design, given, done: &done };
-    let levers = analysis.levers(infill, context.stop).map_err(Failure::input)?;
+    let levers = analysis.levers(infill, context.stop)?;
     context.check()?;
     Ok(levers)
 }

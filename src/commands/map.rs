@@ -55,9 +55,8 @@ impl command::Request for Request {
         context.begin(cost::MAP);
         let setup = self.setup.setup()?;
         let chosen = self.finger.choose(&setup)?;
-        let taught = setup.evaluator.taught(&chosen.scenario, stop).map_err(Failure::input)?;
-        let finger = (&chosen.scenario, &chosen.design);
-        let map = map_of(&setup, finger, taught, self.axes, context)?;
+        let taught = setup.evaluator.taught(&chosen.scenario, stop)?;
+        let map = map_of(&setup, (&chosen.scenario, &chosen.design), taught, self.axes, context)?;
         let svg = report::map::svg(&map)?;
         let value = Mapped { chosen, map };
         let text = layout::wrapped(&value.text()) + &layout::wrote(&self.svg);
@@ -79,7 +78,7 @@ pub(crate) fn map_of(
     axes: Axes,
     context: &Context<'_>,
 ) -> Result<CaptureMap, Failure> {
-    let rig = setup.evaluator.rig(scenario, taught, 1.0).map_err(Failure::input)?;
+    let rig = setup.evaluator.rig(scenario, taught, 1.0)?;
     let grasp = Grasp { stop: context.stop, ..Grasp::of(&scenario.finger) };
     let plane = Plane::new(&*rig, grasp, axes);
     let what = format!("trials of the map {}", value_name(axes));
@@ -108,8 +107,7 @@ impl Mapped {
         let area = format!("{:.1} {}, of starts that insert", map.area, map.area_unit);
         let mut lines = vec![("area".to_owned(), area)];
         for (number, axis) in map.axes.iter().enumerate() {
-            let ends = map.ends(number);
-            let text = ends.map_or("nothing inserts".to_owned(), |[low, high]| {
+            let text = map.ends(number).map_or("nothing inserts".to_owned(), |[low, high]| {
                 let cut = if low == axis.low || high == axis.high { ", the map's end" } else { "" };
                 format!("{low:+} to {high:+} {}{cut}", axis.unit)
             });

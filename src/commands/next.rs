@@ -106,12 +106,8 @@ impl command::Request for Request {
             }
         };
         let failed = subject.not_measurable();
-        let fingers = Fingers {
-            designs: &subject.designs,
-            printable: &among,
-            failed: &failed,
-            printed: &subject.printed(),
-        };
+        let (designs, printed) = (&subject.designs, &subject.printed());
+        let fingers = Fingers { designs, printable: &among, failed: &failed, printed };
         let posterior = layout.posterior(&benches, &settings);
         let mut random = stream(settings.seed, 0, "next");
         let (count, cost_mm) = (usize::from(self.count), self.print_cost_mm);
@@ -162,14 +158,10 @@ impl Advised {
             let fingers = self.not_measurable.iter().map(design).collect::<Vec<_>>().join("; ");
             text += &format!("printed, not measurable: {fingers}\n");
         }
-        for (i, print) in advice.next.iter().enumerate() {
-            text += &format!(
-                "{}. {}\n   expected {}: {}\n",
-                i + 1,
-                design(&print.design),
-                interval(print.expected_mm, print.low_mm, print.high_mm),
-                print.reason
-            );
+        for (number, print) in (1..).zip(&advice.next) {
+            let finger = design(&print.design);
+            let expected = interval(print.expected_mm, print.low_mm, print.high_mm);
+            text += &format!("{number}. {finger}\n   expected {expected}: {}\n", print.reason);
             if !print.needs_print {
                 text +=
                     "   no print: this finger was printed; set the other numbers and measure it\n";

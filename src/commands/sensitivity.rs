@@ -58,9 +58,8 @@ impl Request {
             setup = setup.with_named_uncertainty(&self.uncertainty)?;
         }
         if setup.uncertainty.as_ref().is_some_and(|uncertainty| uncertainty.cell.is_some()) {
-            return Err(Failure::usage(
-                "--uncertainty takes errors here, not a cell; give the cell with --cell",
-            ));
+            let problem = "--uncertainty takes errors here, not a cell; give the cell with --cell";
+            return Err(Failure::usage(problem));
         }
         let template = setup.only_task()?;
         let errors = setup.uncertainty.as_ref().map(|uncertainty| &uncertainty.errors);
@@ -74,9 +73,8 @@ impl Request {
             let evaluation = evaluate(&factors, (&setup.evaluator, template), unit, stop)?;
             Ok(self.objective.value(&evaluation))
         };
-        let values: Result<Vec<Option<f64>>, DesignError> =
-            sample.points().par_iter().map(value).collect();
-        let values = values.map_err(Failure::input)?;
+        let points = sample.points();
+        let values = points.par_iter().map(value).collect::<Result<Vec<_>, DesignError>>()?;
         not_stopped(stop)?;
         let counted: Vec<f64> = values.iter().map(|value| value.unwrap_or_default()).collect();
         let indices = sample.indices(&counted).ok_or_else(|| {

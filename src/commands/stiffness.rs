@@ -38,13 +38,12 @@ impl command::Request for Request {
         let infill = given.then(|| self.infill.required()).transpose()?;
         if let Some([density, direction]) = infill {
             let check = Check { file: "stiffness" };
-            numbers::check(check, DENSITY, density).map_err(Failure::input)?;
-            numbers::check(check, DIRECTION, direction).map_err(Failure::input)?;
+            numbers::check(check, DENSITY, density)?;
+            numbers::check(check, DIRECTION, direction)?;
         }
         let finger = finger_file(&self.finger)?.finger;
         let model = surrogate(&stiffness_data(self.stiffness_data.as_deref(), &finger)?, &finger)?;
-        let predict = |infill| model.predict(infill);
-        let predicted = infill.map(predict).transpose().map_err(Failure::input)?;
+        let predicted = infill.map(|infill| model.predict(infill)).transpose()?;
         let value = predicted.map_or_else(|| shown::json(&model), |predicted| json!(predicted));
         let output = Output::new(shown::table(&model), value);
         // On a terminal the plot is drawn only on request: for fingers computed from their ribs it takes seconds.

@@ -146,7 +146,7 @@ impl Request {
         }
         let priors = self.priors.as_deref().unwrap_or(DEFAULT_PRIORS);
         let source = find("file of priors", PRIORS, priors)?;
-        let priors = Priors::parse(&source.text, &source.file).map_err(Failure::input)?;
+        let priors = Priors::parse(&source.text, &source.file)?;
         let mut setup = self.setup.setup_with(Some(&priors))?;
         let constrained = self.constraints.iter().map(|constraint| constraint.measure);
         let mut measures = self.objective.measures().iter().copied().chain(constrained);
@@ -217,9 +217,9 @@ impl Request {
     fn aggregate(&self, tasks: usize) -> Result<Option<Aggregate>, Failure> {
         let given = self.aggregate.unwrap_or(AggregateKind::Min);
         if tasks == 1 && (self.aggregate.is_some() || !self.weights.is_empty()) {
-            return Err(Failure::usage(
-                "--aggregate and --weights need several tasks, for example --task usb,rj45",
-            ));
+            let problem =
+                "--aggregate and --weights need several tasks, for example --task usb,rj45";
+            return Err(Failure::usage(problem));
         }
         if given != AggregateKind::Weighted && !self.weights.is_empty() {
             return Err(Failure::usage("--weights needs --aggregate weighted"));

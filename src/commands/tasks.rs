@@ -33,7 +33,7 @@ impl command::Request for Request {
 
 /// Returns the entry of a space or of uncertainties: name and description.
 fn entry(Shipped { name, file, text, .. }: &Shipped) -> Result<Entry, Failure> {
-    let fields: toml::Table = input::read(text, file).map_err(Failure::input)?;
+    let fields: toml::Table = input::read(text, file)?;
     let description = fields.get("description").and_then(toml::Value::as_str).unwrap_or_default();
     let line = format!("  {name:<10} {description}\n");
     Ok((json!({"name": name, "description": description}), line))
@@ -41,8 +41,7 @@ fn entry(Shipped { name, file, text, .. }: &Shipped) -> Result<Entry, Failure> {
 
 /// Returns the entry of a task: name, description, and clearance of the seated plug, mm.
 fn task(Shipped { name, file, text, .. }: &Shipped) -> Result<Entry, Failure> {
-    let source = Source { file: (*file).to_owned(), text: (*text).to_owned() };
-    let task = TaskFile::parse(source)?.task;
+    let task = TaskFile::parse(Source { file: (*file).to_owned(), text: (*text).to_owned() })?.task;
     // Two decimals, the accuracy of the computed clearance.
     let [x, y] = clearance(&task).map(|length| (length / MM * 100.0).round() / 100.0);
     let description = task.description;

@@ -117,14 +117,13 @@ impl Request {
         let chosen = self.finger.choose(&setup)?;
         let scenario = &chosen.scenario;
         let offset = offset_mm * MM;
-        let taught = setup.evaluator.taught(scenario, stop).map_err(Failure::input)?;
-        let rig = setup.evaluator.rig(scenario, taught, 1.0).map_err(Failure::input)?;
+        let taught = setup.evaluator.taught(scenario, stop)?;
+        let rig = setup.evaluator.rig(scenario, taught, 1.0)?;
         let (filmed, page) = self.film.record(&*rig, scenario, offset_mm, stop)?;
         let grasp = Grasp { stop, ..Grasp::of(&scenario.finger) };
         let (trial, samples) = match (self.every_s, filmed) {
             _ if self.probe => {
-                let rig = setup.evaluator.rig(scenario, None, 1.0).map_err(Failure::input)?;
-                rig.probe(grasp).ok_or_else(undriven)?
+                setup.evaluator.rig(scenario, None, 1.0)?.probe(grasp).ok_or_else(undriven)?
             }
             _ if self.log.is_some() => rig.grasp(grasp).logged(offset),
             (None, Some(recording)) => (recording.trial, Vec::new()),
@@ -132,8 +131,7 @@ impl Request {
         };
         not_stopped(stop)?;
         if let Some(file) = &self.log {
-            let log = of_samples(&file.to_string_lossy(), &samples).map_err(Failure::input)?;
-            write_file(file, &log.csv())?;
+            write_file(file, &of_samples(&file.to_string_lossy(), &samples)?.csv())?;
         }
         if let Some(file) = &self.svg {
             let label = format!("{}, start shifted by {offset_mm:+.1} mm", scenario.task.name);

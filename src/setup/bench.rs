@@ -93,19 +93,14 @@ impl CalibrationRequest {
     ) -> Result<Prepared<'a>, Failure> {
         context.cancel_on_interrupt()?;
         let source = find("file of priors", PRIORS, &self.priors)?;
-        let priors = Priors::parse(&source.text, &source.file).map_err(Failure::input)?;
+        let priors = Priors::parse(&source.text, &source.file)?;
         let setup = bench.setup(measurements, &priors)?;
-        setup.evaluator.check_paths(&priors, &source.file).map_err(Failure::input)?;
+        setup.evaluator.check_paths(&priors, &source.file)?;
         let experiments = measured::lines(measurements, &setup.task_names())?;
         let effort = self.effort.completed(None);
-        let calibration = CalibrationContext {
-            setup: &setup,
-            priors: &priors,
-            simulations: usize::from(effort.simulations),
-            seed: self.seed,
-            cache: self.cache.folder(&setup),
-            context,
-        };
+        let (setup, priors, simulations) = (&setup, &priors, usize::from(effort.simulations));
+        let (seed, cache) = (self.seed, self.cache.folder(setup));
+        let calibration = CalibrationContext { setup, priors, simulations, seed, cache, context };
         let (subjects, layout) = calibration.subjects(&measurements.file, &experiments, more)?;
         Ok(Prepared { subjects, layout, settings: settings(effort, self.seed, context.stop) })
     }

@@ -82,8 +82,7 @@ impl PairRequest {
     /// Returns the file of the plug.
     pub fn plug(&self) -> &Path {
         // clap requires one of the two.
-        let given = self.assembly.as_ref().or(self.plug.as_ref());
-        given.map_or(Path::new(""), PathBuf::as_path)
+        self.assembly.as_ref().or(self.plug.as_ref()).map_or(Path::new(""), PathBuf::as_path)
     }
 
     /// Returns the file of the socket.
@@ -93,8 +92,7 @@ impl PairRequest {
 
     /// Returns the file to write.
     pub fn out(&self) -> PathBuf {
-        let of_plug = || PathBuf::from(format!("{}.toml", name_of(self.plug())));
-        self.out.clone().unwrap_or_else(of_plug)
+        self.out.clone().unwrap_or_else(|| PathBuf::from(format!("{}.toml", name_of(self.plug()))))
     }
 
     /// Returns the name of the task.
@@ -136,8 +134,7 @@ pub fn parts(files: Files, request: &PairRequest, context: &Context<'_>) -> Resu
     }
     let mut finding = None;
     let pick = |of: &[Body], names: &[String], file: &str| {
-        let picked = (!names.is_empty()).then(|| pick(of, names, file));
-        picked.transpose().map_err(Failure::input)
+        (!names.is_empty()).then(|| pick(of, names, file)).transpose().map_err(Failure::input)
     };
     let plug_body = pick(&plug, &request.plug_body, files[0])?;
     let socket_body = pick(&socket, &request.socket_body, files[1])?;
@@ -173,11 +170,11 @@ fn bodies(path: &Path, file: &str, context: &Context<'_>) -> Result<(Vec<Body>, 
     let opened = std::fs::File::open(path).map_err(unreadable)?;
     let bytes = input::files::read_up_to(opened, LARGEST_FILE).map_err(unreadable)?;
     if is_step(&bytes, &path.display().to_string()) {
-        let (found, warnings) = STEP.read(path, file).map_err(Failure::input)?;
+        let (found, warnings) = STEP.read(path, file)?;
         warnings.iter().for_each(|warning| context.note(warning));
-        return Ok((read(&found, &format!("{file}.obj")).map_err(Failure::input)?, true));
+        return Ok((read(&found, &format!("{file}.obj"))?, true));
     }
-    Ok((read(&bytes, file).map_err(Failure::input)?, false))
+    Ok((read(&bytes, file)?, false))
 }
 
 /// Returns the plug, which can be withdrawn, and the socket of an assembly, and the names of the plug's bodies.
@@ -198,8 +195,7 @@ fn split(
     let names = |of: &[usize]| of.iter().map(|i| bodies[*i].name.clone()).collect::<Vec<_>>();
     let problem = match found.as_deref() {
         Ok([plug]) => {
-            let picked = pick(&bodies, &names(plug), file).map_err(Failure::input)?;
-            return Ok((picked, quoted(&names(plug))));
+            return Ok((pick(&bodies, &names(plug), file)?, quoted(&names(plug))));
         }
         Ok(several) => {
             let sets: Vec<_> = several.iter().map(|of| quoted(&names(of))).collect();

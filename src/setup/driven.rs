@@ -34,8 +34,8 @@ impl Insertion {
     ) -> Result<Self, Failure> {
         let setup = setup.setup()?;
         let scenario = finger.choose(&setup)?.scenario;
-        let taught = setup.evaluator.taught(&scenario, stop).map_err(Failure::input)?;
-        let rig = setup.evaluator.rig(&scenario, None, 1.0).map_err(Failure::input)?;
+        let taught = setup.evaluator.taught(&scenario, stop)?;
+        let rig = setup.evaluator.rig(&scenario, None, 1.0)?;
         let driven = rig.driven(&scenario.finger).ok_or_else(undriven)?;
         not_stopped(stop)?;
         Ok(Insertion { driven, taught: taught.map_or(0.0, tolerance::offset) })

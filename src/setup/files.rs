@@ -26,8 +26,7 @@ impl Fingers {
     pub fn parse(source: Option<Source>) -> Result<Self, Failure> {
         let shipped = || find("finger", FINGERS, DEFAULT_FINGER);
         let Source { file, text } = source.clone().map_or_else(shipped, Ok)?;
-        let file = FingerFile::parse(&text, &file).map_err(Failure::input)?;
-        Ok(Fingers { source, file })
+        Ok(Fingers { source, file: FingerFile::parse(&text, &file)? })
     }
 
     /// Returns the finger model.

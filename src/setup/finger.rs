@@ -19,14 +19,12 @@ use serde_json::json;
 /// Parses a stiffness, N/mm.
 fn stiffness(text: &str) -> Result<f64, String> {
     let n_per_mm = text.parse().unwrap_or(f64::NAN);
-    let problem = numbers::problem("stiffness_compliance_n_per_mm", n_per_mm);
-    problem.map_or(Ok(n_per_mm), Err)
+    numbers::problem("stiffness_compliance_n_per_mm", n_per_mm).map_or(Ok(n_per_mm), Err)
 }
 
 /// Parses a setting, `KEY=VALUE`.
 pub(crate) fn setting(text: &str) -> Result<(String, f64), String> {
-    let parts = text.split_once('=').map(|(key, value)| (key.trim(), value.trim().parse()));
-    match parts {
+    match text.split_once('=').map(|(key, value)| (key.trim(), value.trim().parse())) {
         Some((key, Ok(value))) if !key.is_empty() => Ok((key.to_owned(), value)),
         _ => Err("a setting is KEY=NUMBER, as in task.strategy.tilt_deg=8".to_owned()),
     }
@@ -163,18 +161,12 @@ impl FingerRequest {
             }
             None => {
                 self.infill.required()?;
-                evaluator.predict(&design).map_err(Failure::input)?
+                evaluator.predict(&design)?
             }
         };
-        let scenario = evaluator.scenario(template, &design, stiffness).map_err(Failure::input)?;
-        Ok(ChosenFinger {
-            scenario,
-            cell: evaluator.cell.clone(),
-            finger_model: evaluator.fingers.kind(),
-            design,
-            set,
-            given,
-        })
+        let scenario = evaluator.scenario(template, &design, stiffness)?;
+        let (cell, finger_model) = (evaluator.cell.clone(), evaluator.fingers.kind());
+        Ok(ChosenFinger { scenario, cell, finger_model, design, set, given })
     }
 
     /// Returns the settings of `--set`; values of keys of the space must lie within its bounds.

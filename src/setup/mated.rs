@@ -101,16 +101,9 @@ pub fn mated(
         of.iter().map(|t| t.map(|p| mate.pose * p + above)).collect()
     };
     let (raised, drawn_plug) = (moved(&plug), moved(&drawn[0]));
-    let pair = Pair {
-        plug: &raised,
-        socket: &socket,
-        drawn: [&drawn_plug, &drawn[1]],
-        out,
-        jaws: &jaws,
-        depth,
-        nose: mate.nose_m,
-        play: [0, 1].map(|i| (across[i], mate.play_m[i])),
-    };
+    let drawn: [&[Triangle]; 2] = [&drawn_plug, &drawn[1]];
+    let (nose, play) = (mate.nose_m, [0, 1].map(|i| (across[i], mate.play_m[i])));
+    let pair = Pair { plug: &raised, socket: &socket, drawn, out, jaws: &jaws, depth, nose, play };
     let mut made = task(&pair, &request.name(), like, request.body);
     check_held(files, &made, request)?;
     let seat = (!mate.through && depth > mate.depth_m() + TOLERANCE).then_some(mate.depth_m());

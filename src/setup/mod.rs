@@ -70,7 +70,7 @@ impl Setup {
         let task = |number| input(inputs, &task_role(number)).ok();
         let tasks: Vec<Source> = (1..).map_while(task).collect();
         let space = input(inputs, SPACE)?;
-        let parsed = Space::parse(&space.text, &space.file).map_err(Failure::input)?;
+        let parsed = Space::parse(&space.text, &space.file)?;
         // Only the inputs of a setup with computed fingers contain a finger file.
         let fingers = Fingers::parse(input(inputs, FINGER).ok())?;
         let others = [&input(inputs, ROBOT)?, &input(inputs, STIFFNESS_DATA)?];
@@ -97,7 +97,7 @@ impl Setup {
         engine: EngineKind,
     ) -> Result<Self, Failure> {
         let [robot_source, stiffness_source] = others;
-        let robot = Robot::parse(&robot_source.text, &robot_source.file).map_err(Failure::input)?;
+        let robot = Robot::parse(&robot_source.text, &robot_source.file)?;
         let template =
             |task: &Source| Template::parse(&task.text, &task.file).map_err(Failure::task);
         let templates = tasks.iter().map(template).collect::<Result<Vec<_>, Failure>>()?;
@@ -126,25 +126,19 @@ impl Setup {
         if own.fingers.kind() != FingerModelKind::Paper {
             return None;
         }
-        let evaluator = Evaluator {
-            surrogate: Arc::clone(&own.surrogate),
-            fingers: self.fingers.computed(),
-            templates: own.templates.clone(),
-            robot: own.robot.clone(),
-            engine: own.engine,
-            cell: own.cell.clone(),
-        };
+        let (surrogate, fingers) = (Arc::clone(&own.surrogate), self.fingers.computed());
+        let (templates, robot, engine) = (own.templates.clone(), own.robot.clone(), own.engine);
+        let cell = own.cell.clone();
+        let evaluator = Evaluator { surrogate, fingers, templates, robot, engine, cell };
         check_compatible(&evaluator, &self.space, SPACE).ok()?;
         Some(evaluator)
     }
 
     /// Returns the setup with the parameters of this cell, including those of its robot.
     pub(crate) fn with_cell(mut self, source: Source, cell: Priors) -> Result<Self, Failure> {
-        for row in &cell.parameters {
-            self.evaluator.robot.change(row, row.middle());
-        }
+        cell.parameters.iter().for_each(|row| self.evaluator.robot.change(row, row.middle()));
         self.evaluator.cell = Some(cell);
-        self.evaluator.check_cell(&source.file).map_err(Failure::input)?;
+        self.evaluator.check_cell(&source.file)?;
         self.inputs.insert(CELL.to_owned(), source.text);
         Ok(self)
     }
@@ -155,9 +149,9 @@ impl Setup {
     }
 
     fn with_uncertainty(mut self, errors: Source) -> Result<Self, Failure> {
-        let uncertainty = Uncertainty::parse(&errors.text, &errors.file).map_err(Failure::input)?;
+        let uncertainty = Uncertainty::parse(&errors.text, &errors.file)?;
         if let Some(cell) = &uncertainty.cell {
-            self.evaluator.check_paths(cell, &errors.file).map_err(Failure::input)?;
+            self.evaluator.check_paths(cell, &errors.file)?;
         }
         let robot = &self.evaluator.robot;
         let rows = uncertainty.cell.iter().filter(|cell| cell.robot.is_none());
@@ -184,8 +178,8 @@ impl Setup {
             measured::check(&file, &experiments, template, &self.space)?;
         }
         let [role, priors_role] = BENCH_ROLES.map(str::to_owned);
-        let bounds = Priors::parse(&priors.text, &priors.file).map_err(Failure::input)?;
-        self.evaluator.check_paths(&bounds, &priors.file).map_err(Failure::input)?;
+        let bounds = Priors::parse(&priors.text, &priors.file)?;
+        self.evaluator.check_paths(&bounds, &priors.file)?;
         let measured = Measured { priors: bounds, experiments, file };
         self.inputs.extend([(role, lines.text), (priors_role, priors.text)]);
         self.measured = Some(measured);
@@ -231,12 +225,12 @@ impl Setup {
 fn check_compatible(evaluator: &Evaluator, space: &Space, file: &str) -> Result<(), Failure> {
     let Evaluator { fingers, templates, robot, engine, .. } = evaluator;
     if let FingerSource::Computed(fingers) = fingers {
-        printable::check(space, file, &fingers.file).map_err(Failure::input)?;
+        printable::check(space, file, &fingers.file)?;
     }
     let fits = |task: &Task| engine.rig(task, robot, &fingers.example(task), 1.0).map(|_| ());
     for template in templates {
-        fits(&template.task).map_err(Failure::input)?;
-        template.check(space, file, &fits).map_err(Failure::input)?;
+        fits(&template.task)?;
+        template.check(space, file, &fits)?;
     }
     printable::check_springs(evaluator, space, file).map_err(Failure::input)
 }
@@ -252,7 +246,7 @@ fn check_distinct(templates: &[Template]) -> Result<(), Failure> {
 
 /// Parses a cell file, which must contain a robot.
 pub(crate) fn cell(Source { file, text }: &Source) -> Result<Priors, Failure> {
-    let cell = Priors::parse(text, file).map_err(Failure::input)?;
+    let cell = Priors::parse(text, file)?;
     match cell.robot {
         Some(_) => Ok(cell),
         None => Err(Failure::in_file(

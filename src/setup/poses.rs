@@ -107,8 +107,7 @@ fn mirrored_fit(
 ) -> Option<(f64, String)> {
     let mut found = mates(&mirrored(plug), socket, context.stop).ok()?.mates.into_iter();
     let mate = found.find(|mate| along.is_none_or(|along| insert_along(mate) == along));
-    let mate = mate.filter(|mate| mate.missed_m == 0.0)?;
-    let mm = mate.engaged_m / MM;
+    let mm = mate.filter(|mate| mate.missed_m == 0.0)?.engaged_m / MM;
     Some((mm, format!("mirrored, it engages over {mm:.2} mm: mirror one of the two")))
 }
 

@@ -37,8 +37,7 @@ impl PrintRequest {
     /// If a file is invalid, the study recommends no design, or the finger cannot be built.
     pub fn geometry(&self) -> Result<Geometry, Failure> {
         let (design, file, _) = self.chosen()?;
-        let finger = file.with(&design).map_err(Failure::input)?;
-        Geometry::new(&finger, &infill(&design, self.phase_mm)).map_err(Failure::input)
+        Geometry::new(&file.with(&design)?, &infill(&design, self.phase_mm)).map_err(Failure::input)
     }
 
     /// Returns the stiffness predicted by the stiffness model of the study, else by that of the finger file; `None` if
@@ -95,18 +94,15 @@ pub(crate) fn predicted_stiffness(
     else {
         return Ok(None);
     };
-    let model = surrogate(&stiffness_data(None, finger)?, finger)?;
-    Ok(model.predict([density, direction]).ok())
+    Ok(surrogate(&stiffness_data(None, finger)?, finger)?.predict([density, direction]).ok())
 }
 
 /// Returns the recommended design of a study, its finger file, and its stiffness, if the design was evaluated.
 fn best(dir: &Path) -> Result<(Design, Option<FingerFile>, Option<Prediction>), Failure> {
     let record = StudyRecord::load(dir)?;
     let Some(best) = Answer::of(&record).verdict.finger().cloned() else {
-        return Err(Failure::usage(format!(
-            "{}: the study recommends no design; give --density and --direction",
-            dir.display()
-        )));
+        let problem = "the study recommends no design; give --density and --direction";
+        return Err(Failure::usage(format!("{}: {problem}", dir.display())));
     };
     let found = record.current().iter().find(|recorded| recorded.design == best);
     Ok((best.clone(), record.finger.clone(), found.map(|recorded| recorded.stiffness)))

@@ -40,10 +40,8 @@ impl RepeatRequest {
     ) -> Result<(T, usize), Failure> {
         let (evaluator, repeats, stop) = (&setup.evaluator, (self.seed, self.count), context.stop);
         let progress = |done_of| context.part("starts of the repeats", done_of, 0.0);
-        let started = evaluator.drawn(scenario, taught, repeats, stop, progress);
-        let (started, impossible) = started.map_err(Failure::input)?;
-        let measured = evaluator.repeated(&started, repeats, stop, measure);
-        let measured = measured.map_err(Failure::input)?;
+        let (started, impossible) = evaluator.drawn(scenario, taught, repeats, stop, progress)?;
+        let measured = evaluator.repeated(&started, repeats, stop, measure)?;
         context.check()?;
         Ok((measured, impossible))
     }
@@ -65,12 +63,8 @@ pub fn bands_text((bands, impossible): &(Bands, usize)) -> String {
         [] => format!("all {} offsets tried insert in every repeat", bands.tried_inside),
         unsure => {
             let at: Vec<String> = unsure.iter().map(|mm| format!("{mm:+.1}")).collect();
-            let tried = bands.tried_inside;
-            format!(
-                "{} of {tried} offsets tried do not insert in every repeat: {} mm",
-                unsure.len(),
-                at.join(", ")
-            )
+            let (count, tried, at) = (unsure.len(), bands.tried_inside, at.join(", "));
+            format!("{count} of {tried} offsets tried do not insert in every repeat: {at} mm")
         }
     };
     let firm = bands.firm_mm().map_or("unknown".to_owned(), |[from, to]| {

@@ -175,7 +175,7 @@ impl SetupRequest {
         let space = find("space", SPACES, &self.space)?;
         let cell = self.cell.as_deref().map(cell).transpose()?;
         let robot = self.robot(priors.and_then(Priors::robot_text), cell.as_ref())?;
-        let parsed = Space::parse(&space.text, &space.file).map_err(Failure::input)?;
+        let parsed = Space::parse(&space.text, &space.file)?;
         let fingers = Fingers::parse(self.finger_model.file(Some(&parsed))?)?;
         let stiffness = stiffness_data(self.stiffness_data.as_deref(), &fingers.file.finger)?;
         let setup =
@@ -222,8 +222,7 @@ impl FingerModelRequest {
     /// requires computed fingers.
     fn file(&self, space: Option<&Space>) -> Result<Option<Source>, Failure> {
         let shape = |p: &&Variable| is_shape(&p.key);
-        let shaped = space.and_then(|space| space.parameters.iter().find(shape));
-        match (self.kind, shaped) {
+        match (self.kind, space.and_then(|space| space.parameters.iter().find(shape))) {
             (Some(FingerModelKind::Paper), Some(Variable { key, .. })) => Err(Failure::usage(
                 format!("the space sets {key}, which needs --finger-model computed"),
             )),

@@ -34,7 +34,7 @@ pub struct CellRobot {
 /// If a shipped file is damaged.
 pub fn robots() -> Result<Vec<CellRobot>, Failure> {
     let mut cells: std::collections::BTreeMap<String, Vec<CellRobot>> =
-        input::read(include_str!("cells.toml"), "cells.toml").map_err(Failure::input)?;
+        input::read(include_str!("cells.toml"), "cells.toml")?;
     let mut robots = cells.remove("robot").unwrap_or_default();
     for found in &mut robots {
         let robot = robot(&found.name)?;

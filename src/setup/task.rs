@@ -92,8 +92,7 @@ impl TaskCheck {
         let problems = problems(&task);
         let nominal = match problems.is_empty() {
             true => {
-                let robot = robot(&with.name)?;
-                let (finger, trial) = nominal_start(&task, &robot, with.engine, stop)?;
+                let (finger, trial) = nominal_start(&task, &robot(&with.name)?, with.engine, stop)?;
                 let explanation = nominal::explain(&task, &trial);
                 Some((finger, trial, explanation))
             }
@@ -137,7 +136,7 @@ pub(crate) fn nominal_start(
     stop: &AtomicBool,
 ) -> Result<(Finger, Trial), Failure> {
     let (finger, shaped) = medium(task);
-    let rig = engine.rig(task, robot, &shaped, 1.0).map_err(Failure::input)?;
+    let rig = engine.rig(task, robot, &shaped, 1.0)?;
     let trial = rig.grasp(Grasp { stop, ..Grasp::of(&shaped) }).trial(0.0);
     not_stopped(stop)?;
     Ok((finger, trial))
@@ -151,11 +150,10 @@ pub(crate) fn nominal_recording(
     stop: &AtomicBool,
 ) -> Result<(Finger, Recording), Failure> {
     let (_, shaped) = medium(task);
-    let rig = EngineKind::default().rig(task, robot, &shaped, 1.0).map_err(Failure::input)?;
+    let rig = EngineKind::default().rig(task, robot, &shaped, 1.0)?;
     let recording = rig.record(Grasp { stop, ..Grasp::of(&shaped) }, 0.0);
     not_stopped(stop)?;
-    let recording = recording.ok_or_else(|| Failure::running("the engine records no trials"))?;
-    Ok((shaped, recording))
+    Ok((shaped, recording.ok_or_else(|| Failure::running("the engine records no trials"))?))
 }
 
 /// Returns the shipped measured finger of medium stiffness, and the same finger with the finger model of a task.

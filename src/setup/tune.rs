@@ -43,8 +43,7 @@ pub fn tune_until_success(
 ) -> Result<Tuned, Failure> {
     let robot = robot(&with.name)?;
     let effort = Effort { last, until_enough: true, seed: 0, progress: &|_, _, _, _| () };
-    let tuner = Tuner::new(task, &robot, with.engine, stop);
-    let tuned = tune(&tuner, &effort).map_err(Failure::input)?;
+    let tuned = tune(&Tuner::new(task, &robot, with.engine, stop), &effort)?;
     not_stopped(stop)?;
     Ok(tuned)
 }

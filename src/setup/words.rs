@@ -50,8 +50,7 @@ pub(crate) fn parse_number(
     accepted: impl Fn(f64) -> bool,
     problem: &str,
 ) -> Result<f64, String> {
-    let number = text.parse().ok().filter(|number| accepted(*number));
-    number.ok_or_else(|| problem.to_owned())
+    text.parse().ok().filter(|number| accepted(*number)).ok_or_else(|| problem.to_owned())
 }
 
 /// Parses a finite number of at least 0; the error message names `unit`.

@@ -94,21 +94,18 @@ impl Ended {
         let maps = MAPPED.len() as f64 * cost::MAP;
         let cost = f64::from(levers_missing) * cost::LEVERS + f64::from(maps_missing) * maps;
         context.begin(cost + f64::from(robots_missing) * cost::WALKED);
-        let engine = &subject.provenance.engine.name;
-        let setup = Setup::from_inputs(&record.inputs(dir)?, engine)?;
+        let setup = Setup::from_inputs(&record.inputs(dir)?, &subject.provenance.engine.name)?;
         let design = &subject.design;
-        let stiffness = setup.evaluator.predict(design).map_err(Failure::input)?;
-        let scenario = setup.evaluator.scenario(setup.only_task()?, design, stiffness);
-        let scenario = &scenario.map_err(Failure::input)?;
+        let stiffness = setup.evaluator.predict(design)?;
+        let scenario = &setup.evaluator.scenario(setup.only_task()?, design, stiffness)?;
         self.run.pool()?.install(|| {
             if levers_missing {
-                let span = answer.spread_mm;
-                let levers = levers(&setup, (design, None), span, context)?;
+                let levers = levers(&setup, (design, None), answer.spread_mm, context)?;
                 subject.write(dir, LEVERS, &levers)?;
                 found.levers = Some(levers);
             }
             if maps_missing {
-                let taught = setup.evaluator.taught(scenario, stop).map_err(Failure::input)?;
+                let taught = setup.evaluator.taught(scenario, stop)?;
                 let map = |axes| map_of(&setup, (scenario, design), taught, axes, context);
                 found.maps = MAPPED.into_iter().map(map).collect::<Result<_, _>>()?;
                 subject.write(dir, MAPS, &found.maps)?;
@@ -145,8 +142,7 @@ fn robots(
     let compliant = own.stiffness_n_per_mm.is_some_and(|[_, y, _]| y < COMPLIANT_N_PER_MM);
     let other = robot(if compliant { "ur5e_position" } else { "servo" })?;
     let scenario = &Scenario { robot: other, ..scenario.clone() };
-    let found = setup.evaluator.simulate_or_teach(scenario, Search::Walk, stop);
-    let found = found.map_err(Failure::input)?;
+    let found = setup.evaluator.simulate_or_teach(scenario, Search::Walk, stop)?;
     not_stopped(stop)?;
     Ok(vec![own, window_with(&scenario.robot, found)?])
 }

@@ -110,14 +110,10 @@ impl AskTellStudy {
     fn assign(&mut self, proposal: Proposal) -> Result<(u64, Vec<u8>), Failure> {
         let OpenStudy { study, setup, .. } = &self.open;
         let (number, goals) = (proposal.number, study.config.goals());
-        let work = Work {
-            proposal,
-            seed: study.config.seed,
-            success_rate: goals.needs(Measure::SuccessRate),
-            robust_range: goals.needs(Measure::RobustRange),
-            provenance: study.provenance().clone(),
-            inputs: setup.inputs.clone(),
-        };
+        let (seed, success_rate) = (study.config.seed, goals.needs(Measure::SuccessRate));
+        let robust_range = goals.needs(Measure::RobustRange);
+        let (provenance, inputs) = (study.provenance().clone(), setup.inputs.clone());
+        let work = Work { proposal, seed, success_rate, robust_range, provenance, inputs };
         let bytes = work.encode().map_err(|error| Failure::running(error.to_string()))?;
         self.evaluating.insert(number, work);
         Ok((number, bytes))
@@ -149,8 +145,7 @@ impl AskTellStudy {
     pub fn progress(&self) -> (usize, u64, String) {
         let study = &self.open.study;
         let done = study.evaluations.len();
-        let expected = study.config.expected_evaluations().max(done as u64);
-        (done, expected, self.best_so_far.best())
+        (done, study.config.expected_evaluations().max(done as u64), self.best_so_far.best())
     }
 
     /// Returns the command that resumes the study, with its progress.
@@ -198,8 +193,7 @@ fn set_up(work: &Work) -> Result<Arc<Setup>, Failure> {
 pub fn perform(bytes: &[u8], worker: &str, stop: &AtomicBool) -> Result<Vec<u8>, Failure> {
     // One thread, since the caller has a worker for each processor; and a new one, since a forked process
     // lacks the threads of the shared pool.
-    let alone = RunRequest { threads: Some(1), ..RunRequest::default() }.pool()?;
-    alone.install(|| {
+    RunRequest { threads: Some(1), ..RunRequest::default() }.pool()?.install(|| {
         let work = Work::decode(bytes).map_err(Failure::input)?;
         let setup = set_up(&work)?;
         work.check_worker(&setup.provenance(), worker).map_err(Failure::input)?;

@@ -71,9 +71,8 @@ fn pair(
         return Ok(None);
     }
     let evaluator = &setup.evaluator;
-    let stiffness = evaluator.predict(design).map_err(Failure::input)?;
-    let scenario = &evaluator.scenario(template, design, stiffness).map_err(Failure::input)?;
-    let rig = evaluator.rig(scenario, measured.taught, 1.0).map_err(Failure::input)?;
+    let scenario = &evaluator.scenario(template, design, evaluator.predict(design)?)?;
+    let rig = evaluator.rig(scenario, measured.taught, 1.0)?;
     let grasp = Grasp { stop, ..Grasp::of(&scenario.finger) };
     let record = |step| rig.record(grasp, offset(step));
     let (inside, outside) =

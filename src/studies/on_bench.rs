@@ -42,14 +42,9 @@ pub(crate) fn predict(
     if study.record().on_bench.is_some_and(|found| found.effort == effort) {
         return Ok(());
     }
-    let known = CalibrationContext {
-        setup,
-        priors: &measured.priors,
-        simulations: usize::from(effort.simulations),
-        seed: study.config.seed,
-        cache: run.cache.folder(setup),
-        context,
-    };
+    let (priors, simulations) = (&measured.priors, usize::from(effort.simulations));
+    let (seed, cache) = (study.config.seed, run.cache.folder(setup));
+    let known = CalibrationContext { setup, priors, simulations, seed, cache, context };
     let provenance = study.provenance().clone();
     let (found, predictions) = pool.install(|| {
         let (subjects, layout) = known.subjects(&measured.file, &measured.experiments, &[])?;
@@ -63,7 +58,7 @@ pub(crate) fn predict(
         let best = by_range(result).first().copied().ok_or_else(nothing)?;
         let (task, cache) = (setup.only_task()?, known.cache.clone());
         let simulation = Simulation::new(&setup.evaluator, task, [].iter(), cache, context.stop);
-        let simulated = simulation.window(&best.design, &[]).map_err(Failure::input)?;
+        let simulated = simulation.window(&best.design, &[])?;
         context.check()?;
         let found = bench_prediction(subject, result, simulated, provenance, effort);
         Ok::<_, Failure>((found, table::predictions_csv(subject, result)))

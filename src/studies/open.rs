@@ -78,8 +78,7 @@ impl OpenStudy {
         for (place, Template { task, .. }) in templates.iter().enumerate() {
             let remark = cell.as_ref().and_then(|cell| cell.remark(&task.name));
             remark.iter().for_each(|remark| warn(remark));
-            let given = task.strategy.rule == StartRule::Given;
-            if given
+            if task.strategy.rule == StartRule::Given
                 && record.evaluations.is_empty()
                 && let (_, trial) = nominal_start(task, robot, *engine, &NEVER)?
                 && trial.outcome != Outcome::Inserted

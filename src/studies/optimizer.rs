@@ -21,8 +21,7 @@ pub(crate) fn optimizer(
     let points: Vec<GridPoint> =
         task_point(setup).into_iter().chain(measured_points(setup)).collect();
     if kind == OptimizerKind::Gp && !points.is_empty() {
-        let before = setup.space.parameters.len() + 1;
-        search = Box::new(SeededOptimizer::new(search, before, points));
+        search = Box::new(SeededOptimizer::new(search, setup.space.parameters.len() + 1, points));
     }
     Ok(match config.polish {
         0 => search,

@@ -18,8 +18,7 @@ pub fn run(open: OpenStudy, context: &Context<'_>, all: bool) -> Result<Output, 
     context.begin_study(&open.study);
     let mut ended = open.run(context)?;
     context.end();
-    let remarks = ended.record.remarks();
-    remarks.iter().for_each(|remark| context.note(&format!("warning: {remark}")));
+    ended.record.remarks().iter().for_each(|remark| context.note(&format!("warning: {remark}")));
     let answer = Answer::of(&ended.record);
     context.print(&text::ended(&ended, &answer, all))?;
     // The answer does not depend on the analyses.

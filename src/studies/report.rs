@@ -43,13 +43,9 @@ pub(crate) fn write(dir: &Path, answer: &Answer, model: &Model) -> Result<(), Fa
 fn page_files(dir: &Path, answer: &Answer) -> PageFiles {
     let read = |name: &str| files::read_text(&dir.join(name), LARGEST_OWN).ok();
     let names = printer::FILES.iter().map(|(name, _)| *name);
-    let mut files = PageFiles {
-        dir: dir.to_owned(),
-        films: Vec::new(),
-        files: names.filter(|name| dir.join(name).exists()).collect(),
-        nominal: read(unusable::PICTURE),
-        analyses: analysis::read(dir, answer),
-    };
+    let files = names.filter(|name| dir.join(name).exists()).collect();
+    let (nominal, analyses) = (read(unusable::PICTURE), analysis::read(dir, answer));
+    let mut files = PageFiles { dir: dir.to_owned(), films: Vec::new(), files, nominal, analyses };
     // The film to be shown comes first, since the size of a page is limited and the films of many tasks do not fit.
     let shown = report::preferred(answer);
     let mut ends = ENDS.map(|(end, _)| end);

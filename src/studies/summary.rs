@@ -93,8 +93,7 @@ fn evaluated(record: &StudyRecord, recorded: &Recorded) -> Value {
     let config = &record.config;
     let mut json = json!({"evaluation": recorded.index, "stiffness": recorded.stiffness});
     if let Some(score) = &recorded.score {
-        let values = values(&config.objective, score.values.iter().copied());
-        extend(&mut json, values.into());
+        extend(&mut json, values(&config.objective, score.values.iter().copied()).into());
         if !score.violations.is_empty() {
             json["violations"] = json!(score.violations);
         }

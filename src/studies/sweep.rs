@@ -52,8 +52,7 @@ impl Sweep {
             let clock = Instant::now();
             // Values of a sweep are computed: small ones are meant.
             let chosen = finger.choose_with(setup, &setup.evaluator)?;
-            let (evaluation, _) =
-                evaluator.evaluate_scenario(&chosen.scenario, plan).map_err(Failure::input)?;
+            let (evaluation, _) = evaluator.evaluate_scenario(&chosen.scenario, plan)?;
             let wall_s = clock.elapsed().as_secs_f64();
             let (bands, computed, measured) = (None, None, Vec::new());
             Ok(Evaluated { chosen, evaluation, bands, computed, wall_s, measured })

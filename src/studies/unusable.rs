@@ -24,10 +24,9 @@ pub(crate) fn check(
     let Some((task, nearest)) = record.unusable() else { return Ok(()) };
     let Some(template) = setup.evaluator.templates.get(task) else { return Ok(()) };
     let evaluator = &setup.evaluator;
-    let scenario =
-        evaluator.scenario(template, &nearest.design, nearest.stiffness).map_err(Failure::input)?;
+    let scenario = evaluator.scenario(template, &nearest.design, nearest.stiffness)?;
     let taught = nearest.on(task).and_then(|found| found.taught);
-    let rig = evaluator.rig(&scenario, taught, 1.0).map_err(Failure::input)?;
+    let rig = evaluator.rig(&scenario, taught, 1.0)?;
     let trial = rig.grasp(Grasp { stop, ..Grasp::of(&scenario.finger) }).trial(0.0);
     not_stopped(stop)?;
     let class = outcome(trial.outcome) + stop_words(trial.robot_stopped);
@@ -40,14 +39,10 @@ pub(crate) fn check(
         StartRule::Given => ". `--start taught` moves it to where the finger inserts",
         StartRule::Taught => "",
     };
+    let (file, remedy) = (file.display(), remedy(trial.outcome, trial.robot_stopped));
     Err(Failure::running(format!(
         "no design of the study inserts at the nominal start of {}: evaluation {} ends with {class}{phase}, \
-         at depth {:.2} mm and tilt {:.2} deg; {} shows it. {}{teach}",
-        scenario.task.name,
-        nearest.index,
-        trial.depth_mm,
-        trial.tilt_deg,
-        file.display(),
-        remedy(trial.outcome, trial.robot_stopped)
+         at depth {:.2} mm and tilt {:.2} deg; {file} shows it. {remedy}{teach}",
+        scenario.task.name, nearest.index, trial.depth_mm, trial.tilt_deg
     )))
 }

@@ -102,9 +102,8 @@ impl Emulator {
         let y: Vec<f64> = fitted.iter().map(|point| (point.range_mm - mean_mm) / sd_mm).collect();
         let floor = (ROUNDING_MM / sd_mm).powi(2);
         let effort = FitEffort { evaluations: EVALUATIONS, restarts: true };
-        let process = Gp::new(&x, &y, floor, &fit(&x, &y, floor, None, (effort, stopped)))?;
         let mut emulator = Emulator {
-            process,
+            process: Gp::new(&x, &y, floor, &fit(&x, &y, floor, None, (effort, stopped)))?,
             mean_mm,
             sd_mm,
             simulations,

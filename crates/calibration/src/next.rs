@@ -105,8 +105,7 @@ pub fn advise(
         false => (0..all.len()).map(|column| given.expected(column)).collect(),
     };
     let best = |columns: &[usize]| {
-        let first = columns.iter().rev().copied();
-        first.max_by(|&a, &b| expected[a][0].total_cmp(&expected[b][0]))
+        columns.iter().rev().copied().max_by(|&a, &b| expected[a][0].total_cmp(&expected[b][0]))
     };
     let best_known_mm = best(&printed[..measured.len()]).map(|column| expected[column][0]);
     let insert = (0..measured.len()).chain(known.len()..all.len());

@@ -99,12 +99,8 @@ fn from_draws(
         let values = sorted(drawn.iter().map(|draw| draw[i]));
         let at =
             |level: f64| values.get((level * values.len() as f64) as usize).copied().unwrap_or(0.0);
-        Predicted {
-            mean_mm: mean(&values).unwrap_or(0.0),
-            low_mm: at(TAIL).max(0.0),
-            high_mm: at(1.0 - TAIL).max(0.0),
-            simulated_mm: simulated(number),
-        }
+        let (mean_mm, high_mm) = (mean(&values).unwrap_or(0.0), at(1.0 - TAIL).max(0.0));
+        Predicted { mean_mm, low_mm: at(TAIL).max(0.0), high_mm, simulated_mm: simulated(number) }
     };
     numbers.iter().enumerate().map(one).collect()
 }
@@ -187,11 +183,8 @@ impl Discrepancy {
             let length = hyperparameters.length_scale * stretch;
             [a / length, b / length, random.random::<f64>() * std::f64::consts::TAU]
         };
-        Discrepancy {
-            terms,
-            amplitude: hyperparameters.process * (2.0 / FEATURES as f64).sqrt(),
-            features: (0..FEATURES).map(|_| feature()).collect(),
-        }
+        let amplitude = hyperparameters.process * (2.0 / FEATURES as f64).sqrt();
+        Discrepancy { terms, amplitude, features: (0..FEATURES).map(|_| feature()).collect() }
     }
 
     fn at(&self, finger: &Finger) -> f64 {

@@ -111,15 +111,10 @@ impl Subject {
             let (range_mm, at_least) = line.extent()?;
             Some(Observation { finger, range_mm, at_least, repeats: line.repeats })
         };
-        Bench {
-            simulator: self,
-            places: &self.places,
-            observations: self.experiments.iter().filter_map(observation).collect(),
-            scale_mm: self.emulator.mean_mm.max(1.0),
-            error_mm: self.emulator.error_mm,
-            parameters,
-            first,
-        }
+        let places = &self.places;
+        let observations = self.experiments.iter().filter_map(observation).collect();
+        let (scale_mm, error_mm) = (self.emulator.mean_mm.max(1.0), self.emulator.error_mm);
+        Bench { simulator: self, places, observations, scale_mm, error_mm, parameters, first }
     }
 
     /// Returns the predicted failure at each end of the window: the most frequent one of the nearest measured fingers,

@@ -46,8 +46,7 @@ impl Bar {
             }
             None => format!("simulated: {} mm, not confirmed", span(whole)),
         };
-        let parts = [("light", whole)].into_iter().chain(inner).collect();
-        Bar::placed(name, parts, Some(window))
+        Bar::placed(name, [("light", whole)].into_iter().chain(inner).collect(), Some(window))
     }
 }
 

@@ -14,13 +14,10 @@ const LISTED: usize = 5;
 pub fn text(subject: &Subject, result: &TaskResult) -> String {
     let accuracy = result.accuracy(subject.emulator.error_mm);
     let Subject { emulator, task, .. } = subject;
+    let (verdict, measured) = (result.verdict().text, subject.measured().len());
     let mut text = format!(
-        "{task}: {}\n{task}: {} measured fingers; {} simulations, emulated within {:.2} mm ({} held out)\n",
-        result.verdict().text,
-        subject.measured().len(),
-        emulator.simulations,
-        emulator.error_mm,
-        emulator.held_out
+        "{task}: {verdict}\n{task}: {measured} measured fingers; {} simulations, emulated within {:.2} mm ({} held out)\n",
+        emulator.simulations, emulator.error_mm, emulator.held_out
     );
     if let Some(deviation) = accuracy.mean_deviation_percent {
         let rank = accuracy.spearman.map_or("-".to_owned(), |rank| format!("{rank:+.2}"));

@@ -129,13 +129,8 @@ pub fn compare(studies: &[(String, StudyRecord)]) -> Result<Comparison, String> 
             best_so_far_mm: (0..shortest.unwrap_or(0)).map(band).collect(),
         }
     };
-    Ok(Comparison {
-        task: first.1.config.task_name(),
-        objective: objective.to_string(),
-        best_known_mm,
-        target_mm,
-        groups: groups.into_iter().map(group).collect(),
-    })
+    let (task, groups) = (first.1.config.task_name(), groups.into_iter().map(group).collect());
+    Ok(Comparison { task, objective: objective.to_string(), best_known_mm, target_mm, groups })
 }
 
 /// Returns the settings in which compared studies must agree, each with its name.
@@ -279,8 +274,7 @@ fn draw(area: &Area<'_>, comparison: &Comparison, title: &str) -> DrawResult {
         line(&mut chart, quartile(group, 1), colour.rgb.stroke_width(3), label)?;
     }
     let target = vec![(0.0, comparison.target_mm), (longest, comparison.target_mm)];
-    let label = format!("best known - {TOLERANCE_MM} mm");
-    line(&mut chart, target, MUTED.rgb.stroke_width(1), label)?;
+    line(&mut chart, target, MUTED.rgb.stroke_width(1), format!("best known - {TOLERANCE_MM} mm"))?;
     legend(&mut chart, SeriesLabelPosition::LowerRight)
 }
 

@@ -23,10 +23,7 @@ fn bars<'a>(levers: &'a Levers) -> Vec<Bar<'a>> {
     let bar = |lever: &'a Lever| {
         let end = |end: usize| {
             let amount = lever.amount([lever.low, lever.high][end]);
-            match lever.ends[end] {
-                Some(range) => (range, amount),
-                None => (0.0, format!("none at {amount}")),
-            }
+            lever.ends[end].map_or((0.0, format!("none at {amount}")), |range| (range, amount))
         };
         let (span_mm, ends) = (lever.span_mm(levers.base), [end(0), end(1)]);
         Bar { name: &lever.name, span_mm, ends, lever: Some(lever) }
@@ -58,8 +55,7 @@ pub fn text(levers: &Levers) -> String {
         });
         [name.to_owned(), interval, format!("{low:.1} .. {high:.1}"), format!("{span_mm:.1}")]
     });
-    let head = ["lever", "from .. now .. to", "range there, mm", "span, mm"];
-    text += &text_table(3, head, rows);
+    text += &text_table(3, ["lever", "from .. now .. to", "range there, mm", "span, mm"], rows);
     let left_out = match &levers.left_out[..] {
         [] => String::new(),
         names => format!("; not evaluated: {}", names.join(", ")),

@@ -34,6 +34,5 @@ pub(super) fn finger_file(record: &StudyRecord) -> Option<FingerFile> {
 /// Returns the geometry of the recommended finger; `None` if there is none or it cannot be built.
 pub fn recommended(answer: &Answer) -> Option<Geometry> {
     let design = answer.verdict.finger()?;
-    let finger = finger_file(answer.record)?.with(design).ok()?;
-    Geometry::new(&finger, &infill(design, None)).ok()
+    Geometry::new(&finger_file(answer.record)?.with(design).ok()?, &infill(design, None)).ok()
 }

@@ -74,17 +74,15 @@ pub fn text(found: &SensitivityResult) -> String {
     let table = text_table(1, head, rows);
     let counts = [(found.nominal_start_fails, "fail"), (found.diverged, "diverge")];
     let zeros = counts.iter().filter(|(count, _)| *count > 0);
-    let zeros =
-        zeros.map(|(count, what)| format!("; {count} {what} at the nominal start and count as 0"));
+    let zeros: String = zeros
+        .map(|(count, what)| format!("; {count} {what} at the nominal start and count as 0"))
+        .collect();
     format!(
         "{} of {}: inputs by influence\n{table}\
          total: share of the variance that remains if all others are fixed (total index)\n\
          alone: share that vanishes if this one is fixed (first-order index)\n\
-         {} windows simulated{}\n",
-        found.objective,
-        found.task,
-        found.evaluations,
-        zeros.collect::<String>()
+         {} windows simulated{zeros}\n",
+        found.objective, found.task, found.evaluations
     )
 }
 

@@ -165,8 +165,7 @@ fn draw(area: &Area<'_>, model: &Model, axis: Axis, by_direction: bool) -> DrawR
     }
     for m in measured {
         let (x, level) = of(m);
-        let at = (x, m.stiffness(axis) / N_PER_MM);
-        points(&mut chart, [at], mark(level, &curves), "")?;
+        points(&mut chart, [(x, m.stiffness(axis) / N_PER_MM)], mark(level, &curves), "")?;
     }
     let corner = match axis {
         Axis::Compliance => SeriesLabelPosition::LowerRight,

@@ -35,8 +35,7 @@ pub(super) fn model(record: &StudyRecord) -> Option<impl Fn(&[f64]) -> (f64, f64
     }
     let values: Vec<f64> = y.iter().map(|y| (y - mean) / sd).collect();
     let floor = (NOISE / sd).powi(2);
-    let effort = FitEffort::for_observations(x.len());
-    let theta = fit(&x, &values, floor, None, (effort, &|| false));
+    let theta = fit(&x, &values, floor, None, (FitEffort::for_observations(x.len()), &|| false));
     let gp = Gp::new(&x, &values, floor, &theta)?;
     Some(move |x: &[f64]| {
         let (scaled, variance) = gp.predict(x);
@@ -52,8 +51,7 @@ pub(super) fn of(record: &StudyRecord, model: &impl Fn(&[f64]) -> (f64, f64)) ->
     if parameters.len() < 2 {
         return None;
     }
-    let best = record.recommended()?;
-    let base = record.config.space.shares(&best.design);
+    let base = record.config.space.shares(&record.recommended()?.design);
     let mut axes: Vec<usize> = (0..parameters.len()).collect();
     axes.sort_by(|&a, &b| {
         influence(model, &base, b).total_cmp(&influence(model, &base, a)).then(a.cmp(&b))

@@ -34,19 +34,14 @@ pub struct Cache {
 impl Cache {
     /// Returns the cache in `dir`, which need not exist.
     pub fn new(dir: &Path, robot: &Robot, engine: &EngineRecord) -> Self {
-        Cache {
-            dir: dir.to_owned(),
-            context: format!("sources {SIMULATION_SOURCES}\nengine {engine:?}\nrobot {robot:?}\n"),
-            hits: AtomicU64::new(0),
-            problem: OnceLock::new(),
-        }
+        let context = format!("sources {SIMULATION_SOURCES}\nengine {engine:?}\nrobot {robot:?}\n");
+        Cache { dir: dir.to_owned(), context, hits: AtomicU64::new(0), problem: OnceLock::new() }
     }
 
     /// Returns the key of the evaluation that `inputs`, robot and engine determine. `Debug` of the inputs
     /// must contain all of them, with numbers that read back to the same bits.
     pub fn key(&self, inputs: &impl Debug) -> String {
-        let text = format!("{}inputs {inputs:?}\n", self.context);
-        sha256_hex(text.as_bytes())
+        sha256_hex(format!("{}inputs {inputs:?}\n", self.context).as_bytes())
     }
 
     /// Returns the evaluation with this key, if the cache has an undamaged one.

@@ -155,10 +155,8 @@ impl StudyConfig {
             return Err(format!("optimizer: {kind} accepts one objective only"));
         }
         if self.settles && !self.can_settle() {
-            return Err(
-                "settles: needs the optimizer gp and the objective range or centred-range alone"
-                    .to_owned(),
-            );
+            let needs = "the optimizer gp and the objective range or centred-range alone";
+            return Err(format!("settles: needs {needs}"));
         }
         if self.objective.single().is_none() && self.polish > 0 {
             return Err("polish: accepts one objective only".to_owned());
@@ -174,11 +172,9 @@ impl StudyConfig {
             return Err("uncertainty: needed for success-rate and robust-range only".to_owned());
         }
         if self.race && !self.can_race() {
-            return Err(
-                "race: needs success-rate as the only objective, the aggregate min, and no constraint \
-                        on success-rate; leave it out"
-                    .to_owned(),
-            );
+            let problem = "race: needs success-rate as the only objective, the aggregate min, and no \
+                           constraint on success-rate; leave it out";
+            return Err(problem.to_owned());
         }
         Ok(())
     }

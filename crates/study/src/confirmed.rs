@@ -88,9 +88,9 @@ pub(super) fn ranked(rule: &Rule, before: &Recorded, row: &ConfirmedDesign) -> (
         None => (before.clone(), &row.firm),
         Some(walk) => (with_windows(rule, before, &walk.tasks), &walk.firm),
     };
-    let narrowed = |(task, firm): (&Evaluation, &FirmResult)| {
-        let window = firm.narrowed(&task.window);
-        Evaluation { window, ..task.clone() }
+    let narrowed = |(task, firm): (&Evaluation, &FirmResult)| Evaluation {
+        window: firm.narrowed(&task.window),
+        ..task.clone()
     };
     let tasks: Vec<Evaluation> = recorded.tasks.iter().zip(firm).map(narrowed).collect();
     let rank = rule.rank(&recorded, &tasks.iter().collect::<Vec<_>>());

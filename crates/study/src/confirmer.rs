@@ -166,8 +166,7 @@ impl Confirmer<'_> {
         let count = AtomicUsize::new(0);
         let one = |found: &&Recorded| {
             let result = self.confirm_design(found, log, seed)?;
-            let done = count.fetch_add(1, Ordering::Relaxed) + 1;
-            (self.done)(step, found, [done, designs.len()]);
+            (self.done)(step, found, [count.fetch_add(1, Ordering::Relaxed) + 1, designs.len()]);
             Ok(result)
         };
         let results: Result<Vec<_>, StudyError> =

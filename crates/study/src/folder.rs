@@ -151,25 +151,19 @@ impl Study {
     ) -> Result<(), StudyError> {
         let Some(differences) = self.provenance().differences(now) else { return Ok(()) };
         if !accept_changed {
-            return Err(StudyError::file(
-                &self.dir,
-                format!(
-                    "was measured with different settings:\n{differences}\ngive another --out, \
-                     or --accept-changed to continue in a new segment (the best design is then taken \
-                     from it)"
-                ),
-            ));
+            let problem = format!(
+                "was measured with different settings:\n{differences}\ngive another --out, or \
+                 --accept-changed to continue in a new segment (the best design is then taken from it)"
+            );
+            return Err(StudyError::file(&self.dir, problem));
         }
         let (first, evaluations) = (self.evaluations.len() as u64, self.config.evaluations());
         if first >= evaluations && !self.provenance().simulates_like(now) {
-            return Err(StudyError::file(
-                &self.dir,
-                format!(
-                    "would now be simulated differently, and all its {evaluations} evaluations are \
-                     done:\n{differences}\nraise --budget to measure with the new settings, or \
-                     give another --out"
-                ),
-            ));
+            let problem = format!(
+                "would now be simulated differently, and all its {evaluations} evaluations are done:\n\
+                 {differences}\nraise --budget to measure with the new settings, or give another --out"
+            );
+            return Err(StudyError::file(&self.dir, problem));
         }
         let number = self.segments.len() + 1;
         write_inputs(&self.dir, number, inputs)?;
@@ -287,10 +281,9 @@ impl StudyRecord {
 /// Writes the inputs and the configuration of a study to `dir`.
 fn begin(dir: &Path, config: &StudyConfig, inputs: &Inputs) -> Result<(), StudyError> {
     if has_begun(dir) {
-        return Err(StudyError::file(
-            &dir.join(JOURNAL_FILE),
-            "not the journal of this study: there is no study.toml beside it; give another --out",
-        ));
+        let problem =
+            "not the journal of this study: there is no study.toml beside it; give another --out";
+        return Err(StudyError::file(&dir.join(JOURNAL_FILE), problem));
     }
     write_inputs(dir, 1, inputs)?;
     // Written last: a folder with a configuration is complete.
@@ -313,13 +306,11 @@ fn has_config(dir: &Path) -> bool {
 /// If the configuration of the study differs, with the differences, or cannot be read.
 fn check_continues(dir: &Path, config: &StudyConfig) -> Result<(), StudyError> {
     let Some(differences) = read_config(dir)?.differences(config) else { return Ok(()) };
-    Err(StudyError::file(
-        dir,
-        format!(
-            "holds a study of another configuration; give another --out, or the same configuration (only \
-             the budget may be raised):\n{differences}"
-        ),
-    ))
+    let problem = format!(
+        "holds a study of another configuration; give another --out, or the same configuration (only \
+         the budget may be raised):\n{differences}"
+    );
+    Err(StudyError::file(dir, problem))
 }
 
 /// Reads the configuration of the study in `dir`.

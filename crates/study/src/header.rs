@@ -31,12 +31,8 @@ struct AttributeLine<T> {
 }
 
 fn attribute(name: String, value: impl Serialize) -> Result<String, serde_json::Error> {
-    let line = AttributeLine {
-        op_code: STUDY_USER_ATTRIBUTE,
-        worker_id: WORKER.to_owned(),
-        study_id: 0,
-        user_attr: BTreeMap::from([(name, value)]),
-    };
+    let (op_code, user_attr) = (STUDY_USER_ATTRIBUTE, BTreeMap::from([(name, value)]));
+    let line = AttributeLine { op_code, worker_id: WORKER.to_owned(), study_id: 0, user_attr };
     seal(&line, None)
 }
 

@@ -17,10 +17,7 @@ pub struct ForceLimits {
 impl ForceLimits {
     /// Reads the limits from the input files of a study; a file that cannot be read gives none.
     pub(super) fn of(inputs: &Inputs, tasks: usize) -> Self {
-        let task = |number: usize| {
-            let text = inputs.get(&format!("task_{number}"))?;
-            Task::parse(text, "").ok()
-        };
+        let task = |number: usize| Task::parse(inputs.get(&format!("task_{number}"))?, "").ok();
         let tasks: Vec<Option<Task>> = (1..=tasks).map(task).collect();
         let of = |force: fn(&Task) -> Option<f64>| -> Vec<Option<f64>> {
             tasks.iter().map(|task| task.as_ref().and_then(force)).collect()

@@ -46,13 +46,9 @@ pub struct Segment {
 impl Provenance {
     /// Returns the provenance of this program and these inputs.
     pub fn new(engine: EngineKind, input_sha256: BTreeMap<String, String>) -> Self {
-        Provenance {
-            program: env!("CARGO_PKG_VERSION").to_owned(),
-            source_sha256: SOURCES.to_owned(),
-            simulation_sha256: SIMULATION_SOURCES.to_owned(),
-            input_sha256,
-            engine: engine.record(),
-        }
+        let (program, source_sha256) = (env!("CARGO_PKG_VERSION").to_owned(), SOURCES.to_owned());
+        let (simulation_sha256, engine) = (SIMULATION_SOURCES.to_owned(), engine.record());
+        Provenance { program, source_sha256, simulation_sha256, input_sha256, engine }
     }
 
     /// Returns whether this program gives the same simulation results.

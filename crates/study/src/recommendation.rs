@@ -49,8 +49,7 @@ impl StudyRecord {
     fn first_gains(&self) -> Vec<Option<f64>> {
         let (current, rule) = (self.current(), Rule::of(&self.config));
         let searched = |found: &Recorded| {
-            let values = found.feasible().filter(|_| !found.raced())?;
-            rule.goals.gains(values).first().copied()
+            rule.goals.gains(found.feasible().filter(|_| !found.raced())?).first().copied()
         };
         let known = |at: usize| self.firm_values.get(&current[at].index).copied();
         let confirmed = |index| Some(Confirmed { index, value: known(index)?, is_final: true });

@@ -230,8 +230,7 @@ pub(super) fn most_evaluations(
 /// Returns the evaluation with the smallest sum of constraint violations, the earliest in a tie.
 pub fn nearest(evaluations: &[Recorded]) -> Option<&Recorded> {
     let violation = |recorded: &Recorded| -> Option<f64> {
-        let score = recorded.score.as_ref()?;
-        Some(score.violations.iter().map(|violation| violation.max(0.0)).sum())
+        Some(recorded.score.as_ref()?.violations.iter().map(|violation| violation.max(0.0)).sum())
     };
     let known = evaluations.iter().filter_map(|r| Some((r, violation(r)?)));
     known.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(recorded, _)| recorded)

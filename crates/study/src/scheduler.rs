@@ -121,12 +121,9 @@ pub struct Scheduler {
 impl Scheduler {
     /// Returns the scheduler of a study, to be used with a new optimizer.
     pub fn new(study: &Study) -> Self {
-        Scheduler {
-            batch: study.config.batch as usize,
-            early_stopping: study.config.early_stopping(),
-            settled: study.config.settles && study.settled(),
-            ..Scheduler::default()
-        }
+        let (batch, early_stopping) = (study.config.batch as usize, study.config.early_stopping());
+        let settled = study.config.settles && study.settled();
+        Scheduler { batch, early_stopping, settled, ..Scheduler::default() }
     }
 
     /// Returns the next step.
@@ -157,8 +154,7 @@ impl Scheduler {
                 false => Vec::new(),
             };
             if !proposals.is_empty() {
-                let designs = proposals.iter().map(|p| (p.number, p.design.clone()));
-                self.evaluating.extend(designs);
+                self.evaluating.extend(proposals.iter().map(|p| (p.number, p.design.clone())));
                 return Ok(Next::Evaluate(proposals));
             }
             if !self.evaluating.is_empty() {
@@ -309,9 +305,10 @@ impl Scheduler {
     fn proposals(&self, study: &Study) -> Vec<Proposal> {
         let limit = Self::limit(study) as u64;
         let within = self.open.iter().filter(|(number, _)| **number < limit);
-        let proposal = |(&number, (point, told)): (&u64, &(GridPoint, usize))| {
-            let design = study.config.space.design(point);
-            Proposal { number, design, race: study.race(*told) }
+        let proposal = |(&number, (point, told)): (&u64, &(GridPoint, usize))| Proposal {
+            number,
+            design: study.config.space.design(point),
+            race: study.race(*told),
         };
         within.map(proposal).collect()
     }

@@ -56,8 +56,7 @@ fn read<T: DeserializeOwned, U: DeserializeOwned>(
 
 /// Serializes contents and times as a line with a checksum.
 fn encoded(contents: &impl Serialize, timing: Option<&Timing>) -> Result<Vec<u8>, WorkError> {
-    let line = seal(contents, timing);
-    Ok(line.map_err(|error| WorkError(error.to_string()))?.into_bytes())
+    Ok(seal(contents, timing).map_err(|error| WorkError(error.to_string()))?.into_bytes())
 }
 
 impl Work {

@@ -172,7 +172,7 @@ fn draw_sheet(request: &PrintRequest, geometry: &Geometry, out: &Path) -> Result
             return Err(Failure::usage(problem));
         }
     };
-    let ribs = mechanics::compute(geometry).map_err(Failure::input)?;
+    let ribs = mechanics::compute(geometry)?;
     let measured = request.predicted_stiffness()?.map(|prediction| prediction.at_pad());
     let origin = &request.dir.as_deref().map_or(String::new(), study_name);
     Ok(write(geometry, &SheetData { origin, ribs: &ribs, measured }))

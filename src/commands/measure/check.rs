@@ -32,11 +32,9 @@ impl command::Request for Request {
             };
             let [ranges, bounds, rest] = [Some(false), Some(true), None].map(count);
             let task = &of[0].task;
-            let text = format!(
-                "{task:<8} {}, {}, {rest:>3} not measurable\n",
-                input::counted(ranges, "range"),
-                input::counted(bounds, "lower bound")
-            );
+            let own = input::counted(ranges, "range");
+            let least = input::counted(bounds, "lower bound");
+            let text = format!("{task:<8} {own}, {least}, {rest:>3} not measurable\n");
             let counts = json!({
                 "task": task,
                 "lines": of.len(),

@@ -67,8 +67,7 @@ impl command::Request for Request {
         let (task, mut tuned) = tune_new(mated.made.task, &self.robot, stop)?;
         mated.made.task = task;
         tuned.iter_mut().for_each(|tuned| tuned.steps[0].change.clone_from(&mated.strategy));
-        let written = self.write(out, &mated)?;
-        let checked = TaskCheck::of(written.source, &self.robot, stop)?;
+        let checked = TaskCheck::of(self.write(out, &mated)?.source, &self.robot, stop)?;
         let tuned = tuned.as_ref();
         let text = text(&self.names(), &mated, tuned, &checked);
         let failure = checked.failure_of_new(tuned);

@@ -100,8 +100,7 @@ impl command::Request for Request {
         let strategy = tuned.map_or(String::new(), |tuned| brief("strategy", tuned));
         let text = format!("written       {file}\n{strategy}{}", checked.text_of_new());
         let value = json!({"out": file, "tuned": chosen(tuned), "check": checked.json()});
-        let failure = checked.failure_of_new(tuned);
-        Ok(Output { failure, ..Output::new(wrapped(&text), value) })
+        Ok(Output { failure: checked.failure_of_new(tuned), ..Output::new(wrapped(&text), value) })
     }
 }
 

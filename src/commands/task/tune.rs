@@ -86,8 +86,7 @@ impl command::Request for Request {
         if let Some(problem) = problems(&file.task).first() {
             let (file, key, text) = (&file.source.file, &problem.key, &problem.problem);
             let more = "`optimize task check` lists the accepted values";
-            let problem = format!("{text}; {more}");
-            return Err(Failure::task(Place::file(file).key(key).fault(problem)));
+            return Err(Failure::task(Place::file(file).key(key).fault(format!("{text}; {more}"))));
         }
         let robot = robot(&self.robot.name)?;
         let tuner = self.tuner(&file.task, &robot, stop);
@@ -96,7 +95,7 @@ impl command::Request for Request {
         };
         let effort =
             Effort { last: Stage::Search, until_enough: false, seed: self.seed, progress: &report };
-        let tuned = tune(&tuner, &effort).map_err(Failure::input)?;
+        let tuned = tune(&tuner, &effort)?;
         if context.check().is_err() {
             return Err(self.interrupted(&file, &tuned, target)?);
         }
@@ -150,7 +149,7 @@ impl Request {
         let after = self.rewritten(file, tuned)?;
         let found = self.tuner(&after.task, robot, stop).given(&after.task.strategy);
         not_stopped(stop)?;
-        let found = found.map_err(Failure::input)?;
+        let found = found?;
         self.save(file, &after, target)?;
         Ok(found)
     }
@@ -292,15 +291,11 @@ fn text(done: &TunedTask<'_>) -> String {
         Some(after) => {
             let best = tuned.best();
             let turned = turned_text(best);
-            let text = format!(
-                "{}: {} about the written start{turned}",
-                best.change,
-                ranges(&after.windows)
-            );
+            let ranges = ranges(&after.windows);
+            let text = format!("{}: {ranges} about the written start{turned}", best.change);
             all.push(line("chosen", text));
             all.extend(tilt_text(tuned).map(|why| line("", why)));
-            let wider = |step: &Step| step.tried.score > best.tried.score;
-            if tuned.steps.iter().any(wider) {
+            if tuned.steps.iter().any(|step| step.tried.score > best.tried.score) {
                 let why = format!(
                     "no other strategy checked has {INDIFFERENCE_MM} mm more with the socket turned, too"
                 );

@@ -71,15 +71,8 @@ impl LeverAnalysis<'_> {
             let all = || ranges[..infills].iter().map(|range| range.unwrap_or(0.0));
             [all().fold(f64::INFINITY, f64::min), all().fold(0.0, f64::max)]
         };
-        Ok(Levers {
-            task: template.task.name.clone(),
-            design: design.clone(),
-            base,
-            infill: infill.unwrap_or_else(over),
-            levers,
-            left_out,
-            windows: of,
-        })
+        let (task, infill) = (template.task.name.clone(), infill.unwrap_or_else(over));
+        Ok(Levers { task, design: design.clone(), base, infill, levers, left_out, windows: of })
     }
 
     /// Returns the levers to measure and the names of those that exceed [`MAX_WINDOWS`]. The scenarios of their ends
@@ -152,15 +145,9 @@ impl LeverParameter {
         let LeverParameter { parameter, value } = self;
         // To 9 decimals, without floating-point noise.
         let rounded = |value: f64| (value * 1e9).round() / 1e9;
-        Lever {
-            unit: parameter.path.unit().trim().to_owned(),
-            key: parameter.path.to_string(),
-            name: parameter.name,
-            value: rounded(value),
-            low: rounded(values[0]),
-            high: rounded(values[1]),
-            source: parameter.source,
-            ends: [None; 2],
-        }
+        let (unit, key) = (parameter.path.unit().trim().to_owned(), parameter.path.to_string());
+        let (value, low, high) = (rounded(value), rounded(values[0]), rounded(values[1]));
+        let source = parameter.source;
+        Lever { unit, key, name: parameter.name, value, low, high, source, ends: [None; 2] }
     }
 }

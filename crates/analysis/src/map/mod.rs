@@ -61,17 +61,13 @@ impl CaptureMap {
         let inserting = nodes.values().filter(|found| found.outcome == Outcome::Inserted).count();
         let names = [["y", "mm"], plane.axes.second().0];
         let outcome = |node| nodes.get(&node).map_or(Outcome::Diverged, |found| found.outcome);
-        CaptureMap {
-            task: task.to_owned(),
-            design,
-            axes: [0, 1].map(|axis| MapAxis::new(names[axis], low[axis], high[axis])),
-            outcomes: lattice(low, high, |node| OutcomeCode(outcome(node))),
-            simulated: lattice(low, high, |node| nodes.get(&node).is_some_and(|f| f.simulated)),
-            trials,
-            traced_step: value(step),
-            area: inserting as f64 * value(1) * value(1),
-            area_unit: format!("mm {}", names[1][1]).replace("mm mm", "mm2"),
-        }
+        let task = task.to_owned();
+        let axes = [0, 1].map(|axis| MapAxis::new(names[axis], low[axis], high[axis]));
+        let outcomes = lattice(low, high, |node| OutcomeCode(outcome(node)));
+        let simulated = lattice(low, high, |node| nodes.get(&node).is_some_and(|f| f.simulated));
+        let (traced_step, area) = (value(step), inserting as f64 * value(1) * value(1));
+        let area_unit = format!("mm {}", names[1][1]).replace("mm mm", "mm2");
+        CaptureMap { task, design, axes, outcomes, simulated, trials, traced_step, area, area_unit }
     }
 
     /// Returns a caption of one sentence.

@@ -61,8 +61,7 @@ impl<'a> Plane<'a> {
             let conditions = Draw::with([(self.axes.second().1, value(other))]).conditions;
             self.rig.grasp(Grasp { conditions, ..self.grasp })
         };
-        let grasped = self.grasped[(other + LIMIT[1]) as usize].get_or_init(grasp);
-        grasped.trial(value(y) * MM).outcome
+        self.grasped[(other + LIMIT[1]) as usize].get_or_init(grasp).trial(value(y) * MM).outcome
     }
 }
 

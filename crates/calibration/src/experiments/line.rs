@@ -174,21 +174,19 @@ fn density(text: &str) -> Result<f64, String> {
 fn direction(text: &str) -> Result<f64, String> {
     let degrees = number(text)?;
     let radians = wrong_unit::angle(degrees, [0.0, 90.0], 1.0).map(|radians| radians.join(" "));
-    let problem = radians.or_else(|| numbers::problem(DIRECTION_KEY, degrees));
-    problem.map_or(Ok(degrees), Err)
+    radians.or_else(|| numbers::problem(DIRECTION_KEY, degrees)).map_or(Ok(degrees), Err)
 }
 
 /// Parses a length, mm.
 pub(crate) fn length(text: &str) -> Result<f64, String> {
+    let looks_like = |value: f64, unit: &str, mm: f64| {
+        Err(format!("{value} looks like {unit}; give millimetres, as in {}", shown(mm)))
+    };
     match number(text)? {
-        long if long.abs() > LARGEST_LENGTH_MM => Err(format!(
-            "{long} looks like micrometres; give millimetres, as in {}",
-            shown(long / 1e3)
-        )),
-        short if short != 0.0 && short.abs() < MIN_LENGTH_MM => Err(format!(
-            "{short} looks like metres; give millimetres, as in {}",
-            shown(short * 1e3)
-        )),
+        long if long.abs() > LARGEST_LENGTH_MM => looks_like(long, "micrometres", long / 1e3),
+        short if short != 0.0 && short.abs() < MIN_LENGTH_MM => {
+            looks_like(short, "metres", short * 1e3)
+        }
         length => Ok(length),
     }
 }

@@ -81,12 +81,8 @@ impl Curves {
     pub fn in_tool(&self) -> Self {
         let turn = UnitQuaternion::from_scaled_axis(-self.tilt * Vector3::x());
         let turned = |all: &Vec<Vector3<f64>>| all.iter().map(|one| turn * one).collect();
-        Curves {
-            tcp: turned(&self.tcp),
-            target: self.target.as_ref().map(turned),
-            force: turned(&self.force),
-            tilt: self.tilt,
-        }
+        let target = self.target.as_ref().map(turned);
+        Curves { tcp: turned(&self.tcp), target, force: turned(&self.force), tilt: self.tilt }
     }
 
     /// Returns the index at which the target was stopped by a detected touch.
@@ -106,13 +102,9 @@ impl Curves {
 /// Interpolates linearly between two samples.
 fn between(a: &LogSample, b: &LogSample, time: f64) -> LogSample {
     let part = ((time - a.time_s) / (b.time_s - a.time_s)).clamp(0.0, 1.0);
-    LogSample {
-        line: a.line,
-        time_s: time,
-        tcp: a.tcp.towards(&b.tcp, part),
-        target: a.target.zip(b.target).map(|(a, b)| a.towards(&b, part)),
-        force: a.force + part * (b.force - a.force),
-    }
+    let target = a.target.zip(b.target).map(|(a, b)| a.towards(&b, part));
+    let force = a.force + part * (b.force - a.force);
+    LogSample { line: a.line, time_s: time, tcp: a.tcp.towards(&b.tcp, part), target, force }
 }
 
 /// Returns the first derivatives, by central differences over `reach` steps on either side.

@@ -43,10 +43,7 @@ pub fn identified_robot(own: &Robot, flange: &[Option<Flange>; 3]) -> (Robot, Op
     });
     let sd = axes.iter().flatten().map(|(_, sd)| *sd).fold(f64::INFINITY, f64::min);
     let mut servo = base;
-    for (stiffness, log) in servo.stiffness.iter_mut().zip(each) {
-        *stiffness *= libm::exp(log);
-    }
+    servo.stiffness.iter_mut().zip(each).for_each(|(k, log)| *k *= libm::exp(log));
     servo.rotational_stiffness = base.rotational_stiffness.map(|k| k * libm::exp(common));
-    let name = "identified".to_owned();
-    (Robot { name, drive: Drive::Servo(servo), ..own.clone() }, Some(sd))
+    (Robot { name: "identified".to_owned(), drive: Drive::Servo(servo), ..own.clone() }, Some(sd))
 }

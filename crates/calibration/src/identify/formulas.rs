@@ -50,13 +50,9 @@ pub fn flange(all: &[Curves], axis: usize) -> Option<Flange> {
     let jackknife = if n > 1.0 { ((n - 1.0) / n * squares).sqrt() } else { f64::INFINITY };
     let [stiffness, damping, mass] = fit.terms;
     let known = stiffness > 0.0 && jackknife < stiffness;
-    known.then_some(Flange {
-        stiffness: Estimate { mean: stiffness, sd: jackknife.max(MIN_RELATIVE_SD * stiffness) },
-        damping,
-        mass,
-        delay_s: delay as f64 * STEP_S,
-        explained: fit.explained,
-    })
+    let stiffness = Estimate { mean: stiffness, sd: jackknife.max(MIN_RELATIVE_SD * stiffness) };
+    let delay_s = delay as f64 * STEP_S;
+    known.then_some(Flange { stiffness, damping, mass, delay_s, explained: fit.explained })
 }
 
 /// Returns the fraction of the variance of the force that a compliant flange explains, summed over the axes of the
@@ -72,8 +68,7 @@ pub(super) fn explained(all: &[Curves]) -> f64 {
 
 /// Subtracts the fitted straight line from a column: bias and drift of the sensor.
 fn detrended(column: DVector<f64>) -> DVector<f64> {
-    let count = column.len() as f64;
-    let middle = 0.5 * (count - 1.0);
+    let middle = 0.5 * (column.len() as f64 - 1.0);
     let times = DVector::from_fn(column.len(), |i, _| i as f64 - middle);
     let (mean, slope) = (column.mean(), column.dot(&times) / times.norm_squared());
     column.add_scalar(-mean) - times * slope
@@ -143,8 +138,7 @@ pub fn preload(all: &[Curves]) -> Option<Estimate> {
     let of = |one: &Curves| {
         let (stopped, target) = (one.stopped()?, one.target.as_ref()?);
         let rest = target[stopped..].windows(2).position(|pair| pair[0] == pair[1]);
-        let sent = target[stopped + rest?];
-        Some(one.tcp[stopped].z - sent.z)
+        Some(one.tcp[stopped].z - target[stopped + rest?].z)
     };
     estimate(&all.iter().filter_map(of).collect::<Vec<_>>())
 }
@@ -197,8 +191,7 @@ pub fn friction(probe: &Curves) -> Option<Friction> {
     let rates = rates(&smoothed(moved, HALF_WIDTH), REACH);
     let speed: Vec<f64> = rates.iter().map(|rate| rate.y).collect();
     let fastest = speed.iter().map(|v| v.abs()).fold(0.0, f64::max);
-    let moving = |i: usize| speed[i].abs() > MIN_SPEED * fastest;
-    let force = undrifted(probe, moving)?;
+    let force = undrifted(probe, |i| speed[i].abs() > MIN_SPEED * fastest)?;
     let least = (MIN_SLIDE_S / STEP_S) as usize;
     let each = |sign: f64| -> Vec<Slide> {
         let on = |i: usize| sign * speed[i] > MIN_SPEED * fastest && force[i].z > MIN_NORMAL_N;
@@ -211,8 +204,7 @@ pub fn friction(probe: &Curves) -> Option<Friction> {
         estimate(&settled.map(|slide| libm::atan(slide.ratio)).collect::<Vec<_>>())
     };
     // The slope of the face adds to the friction angle in one direction and subtracts from it in the other.
-    let both = angle(&forth).zip(angle(&back));
-    let coefficient = both.map(|(a, b)| {
+    let coefficient = angle(&forth).zip(angle(&back)).map(|(a, b)| {
         let mean = libm::tan(0.5 * (a.mean + b.mean));
         let sd = 0.5 * libm::hypot(a.sd, b.sd);
         Estimate { mean, sd: sd.max(MIN_FRICTION_RELATIVE_SD * mean) }

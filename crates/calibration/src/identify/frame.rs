@@ -79,13 +79,8 @@ impl Frame {
         }
         // Robots state the centre of mass beside the mass, so it is accepted; forces do not depend on it.
         check.each("tool_centre_mm", raw.tool_centre_mm, Check::distance)?;
-        Ok(Frame {
-            base: Isometry3::from_parts(Translation3::from(origin * MM), rotation),
-            upright,
-            sign,
-            tool_mass: mass,
-            compensated,
-        })
+        let base = Isometry3::from_parts(Translation3::from(origin * MM), rotation);
+        Ok(Frame { base, upright, sign, tool_mass: mass, compensated })
     }
 
     /// Converts a pose in the base (m; axis-angle, rad) to the task's frame.
@@ -97,8 +92,7 @@ impl Frame {
         let rotation = UnitQuaternion::from_scaled_axis(turn);
         let tilt = self.base.rotation.inverse() * rotation * self.upright.inverse();
         let turned = tilt.scaled_axis();
-        let askew = turned.yz().norm();
-        if askew > MAX_ROTATION || turned.x.abs() > PI / 2.0 {
+        if turned.yz().norm() > MAX_ROTATION || turned.x.abs() > PI / 2.0 {
             let [x, y, z]: [f64; 3] = turned.map(f64::to_degrees).into();
             return Err(format!(
                 "the tool is rotated by ({x:.0}, {y:.0}, {z:.0}) degrees about the task's axes from \

@@ -320,8 +320,7 @@ impl Identification<'_> {
         let before = self.replayed((&self.evaluator.robot, 1.0), &attempts, &[])?;
         let after = self.replayed((robot, 1.0), &attempts, &now)?;
         let each = attempts.into_iter().zip(before).zip(after);
-        let compared = each.map(|((logged, before), after)| Compared { logged, before, after });
-        Ok(compared.collect())
+        Ok(each.map(|((logged, before), after)| Compared { logged, before, after }).collect())
     }
 }
 

@@ -106,8 +106,7 @@ struct Table<'a> {
 /// Returns the cells of a line, without quotes.
 fn cells(line: &str, commas: bool) -> impl Iterator<Item = &str> {
     let cells = line.split(move |c: char| if commas { c == ',' } else { c.is_whitespace() });
-    let cells = cells.filter(move |cell| commas || !cell.is_empty());
-    cells.map(|cell| cell.trim().trim_matches('"'))
+    cells.filter(move |cell| commas || !cell.is_empty()).map(|cell| cell.trim().trim_matches('"'))
 }
 
 impl<'a> Table<'a> {
@@ -186,8 +185,7 @@ impl<'a> Table<'a> {
         let (tcp, target, force) = match self.rtde {
             Some(frame) => {
                 let target = (!goal.is_empty()).then(|| of_base(frame, &goal)).transpose()?;
-                let tcp = of_base(frame, &numbers[1..7])?;
-                (tcp, target, frame.force_of_base(vector(force)))
+                (of_base(frame, &numbers[1..7])?, target, frame.force_of_base(vector(force)))
             }
             None => {
                 let of = |place: &[f64]| match exceeding(place, MAX_REACH / MM) {

@@ -61,16 +61,10 @@ impl Logged {
         let curves = Curves::of_log(&log, bias(&run.log));
         let since = touched_s - log.samples[0].time_s;
         let trajectory = curves.trajectory()?;
-        Some(Logged {
-            file: run.log.file.clone(),
-            design: run.design.clone(),
-            offset: run.offset,
-            outcome,
-            touch: (since / STEP_S) as usize,
-            push: (trajectory.push_start() / STEP_S) as usize,
-            curves,
-            trajectory,
-        })
+        let (file, design) = (run.log.file.clone(), run.design.clone());
+        let touch = (since / STEP_S) as usize;
+        let push = (trajectory.push_start() / STEP_S) as usize;
+        Some(Logged { file, design, offset: run.offset, outcome, touch, push, curves, trajectory })
     }
 
     /// Returns the attempt with the measured trajectory of the TCP as the commanded one.
@@ -126,8 +120,7 @@ impl Logged {
             let [measured, simulated] =
                 [&self.curves.force, &replayed.force].map(|force| mean(&force[bin.clone()]));
             let (a, b) = (measured.norm(), simulated.norm());
-            let differ = a.min(b) < NO_CONTACT_N && a.max(b) > CONTACT_N;
-            apart = if differ { apart + 1 } else { 0 };
+            apart = if a.min(b) < NO_CONTACT_N && a.max(b) > CONTACT_N { apart + 1 } else { 0 };
             over = apart >= APART_BINS;
             let offsets = offsets.iter().take(self.data_per_bin() / 6);
             let poses = offsets.map(|offsets| mean(&offsets[bin.clone()]));
@@ -161,8 +154,7 @@ impl Identification<'_> {
             let rig = evaluator.rig(&scenario, None, step_factor)?;
             let grasp = Grasp { stop: self.stop, ..Grasp::of(&scenario.finger) };
             let trajectories: Vec<_> = alike.iter().map(|logged| &logged.trajectory).collect();
-            let followed = rig.follow(grasp, &trajectories);
-            all.extend(followed.into_iter().map(|(trial, samples)| {
+            all.extend(rig.follow(grasp, &trajectories).into_iter().map(|(trial, samples)| {
                 (Curves::of_samples(&samples, self.tool_mass), trial.outcome)
             }));
         }

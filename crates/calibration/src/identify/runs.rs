@@ -23,8 +23,7 @@ fn run_line(cells: &mut Cells<'_>, before: &[Run<String>]) -> Run<String> {
     match before.iter().find(|old| old.log == log) {
         _ if log.is_empty() => cells.problem("log", "is empty; name the file of the log"),
         Some(old) => {
-            let words = format!("same log as in line {}; list each log once", old.line);
-            cells.problem("log", &words);
+            cells.problem("log", &format!("same log as in line {}; list each log once", old.line));
         }
         None => {}
     }

@@ -203,10 +203,7 @@ impl Regression {
 
 /// Subtracts the mean of each row.
 fn centred(mut rows: DMatrix<f64>) -> DMatrix<f64> {
-    for mut row in rows.row_iter_mut() {
-        let mean = row.mean();
-        row.add_scalar_mut(-mean);
-    }
+    rows.row_iter_mut().for_each(|mut row| row.add_scalar_mut(-row.mean()));
     rows
 }
 

@@ -45,14 +45,9 @@ pub(super) fn values<'a>(rows: &[&'a Parameter], z: &[f64]) -> Vec<(&'a Paramete
 
 /// Returns a parameter with a measured value; its bounds are widened to three standard deviations but stay positive.
 pub(super) fn with_value(row: &Parameter, value: f64, sd: f64, source: &str) -> Parameter {
-    Parameter {
-        value: Some(value),
-        sd: Some(sd),
-        low: row.low.min(value - 3.0 * sd).max(if row.low > 0.0 { 0.2 * value } else { f64::MIN }),
-        high: row.high.max(value + 3.0 * sd),
-        source: source.to_owned(),
-        ..row.clone()
-    }
+    let low = row.low.min(value - 3.0 * sd).max(if row.low > 0.0 { 0.2 * value } else { f64::MIN });
+    let (high, source) = (row.high.max(value + 3.0 * sd), source.to_owned());
+    Parameter { value: Some(value), sd: Some(sd), low, high, source, ..row.clone() }
 }
 
 /// Creates an unknown with a posterior of its own.
@@ -92,12 +87,9 @@ pub(super) fn fit(
     let moments = Moments::of(&drawn);
     let (mean, sd) = (moments.mean, moments.sample_deviation());
     let (value, sd) = if log { (libm::exp(mean), sd * libm::exp(mean)) } else { (mean, sd) };
-    let posterior = Parameter {
-        value: Some(value.clamp(prior.low, prior.high)),
-        sd: Some(sd),
-        source: "curves of the attempts".to_owned(),
-        ..prior.clone()
-    };
+    let value = Some(value.clamp(prior.low, prior.high));
+    let source = "curves of the attempts".to_owned();
+    let posterior = Parameter { value, sd: Some(sd), source, ..prior.clone() };
     Unknown { remaining_sd, ..identified(prior.clone(), posterior, ValueOrigin::Fit) }
 }
 

@@ -23,8 +23,7 @@ impl ExcessForce {
     pub fn of(record: &StudyRecord, tasks: &[&Evaluation]) -> Option<Self> {
         let ForceLimits { connectors, robot, .. } = &record.limits;
         let on = |(place, (task, evaluation)): (usize, (&str, &&Evaluation))| {
-            let connector = connectors.get(place).copied().flatten();
-            Self::on(task, evaluation, (connector, robot.as_ref()))
+            Self::on(task, evaluation, (connectors.get(place).copied().flatten(), robot.as_ref()))
         };
         record.config.tasks().zip(tasks).enumerate().find_map(on)
     }

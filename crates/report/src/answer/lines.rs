@@ -71,8 +71,7 @@ pub fn measured(answer: &Answer) -> Vec<Line> {
 /// Returns the recommended design; `None` if measurements were used, for a Pareto front, or without a finger to print.
 fn simulated_finger<'a, 'b>(answer: &'b Answer<'a>) -> Option<&'b Recommended<'a>> {
     let alone = answer.front.is_none() && answer.record.on_bench.is_none();
-    let named = answer.verdict.finger().is_some();
-    answer.recommended.as_ref().filter(|_| alone && named)
+    answer.recommended.as_ref().filter(|_| alone && answer.verdict.finger().is_some())
 }
 
 /// Returns the outcomes at the ends of the windows of a recommended design, its success rates, constraints, ties and
@@ -212,8 +211,7 @@ pub fn tied(answer: &Answer, ties: &Ties) -> Line {
         };
         format!("{nearest} lose at least {}", mm(loss))
     });
-    let parts = [Some(tied), others, narrow].into_iter().flatten();
-    line("ties", parts.collect::<Vec<_>>().join("; "))
+    line("ties", [Some(tied), others, narrow].into_iter().flatten().collect::<Vec<_>>().join("; "))
 }
 
 /// Largest number of parameters whose values are listed.
@@ -308,8 +306,7 @@ pub fn recommended(answer: &Answer, found: &Recommended) -> Vec<Line> {
 fn raced(answer: &Answer) -> Option<Line> {
     let raced = || answer.record.current().iter().filter(|recorded| recorded.raced());
     let rates = raced().flat_map(|recorded| &recorded.tasks).flat_map(|task| &task.success);
-    let tried = rates.filter_map(|rate| rate.raced()).map(f64::from);
-    mean(tried).map(|mean| {
+    mean(rates.filter_map(|rate| rate.raced()).map(f64::from)).map(|mean| {
         let [designs, of] = [raced().count(), answer.designs];
         let early =
             format!("{designs} of {of} designs ended early, after {mean:.0} draws on average");
@@ -346,8 +343,7 @@ pub fn window(evaluation: &Evaluation) -> Vec<Line> {
     let window = &evaluation.window;
     if window.nominal != Outcome::Inserted {
         let (nominal, stop) = (window.nominal.label(), stop_words(evaluation.nominal_stop()));
-        let text = format!("none: the nominal start ends with {nominal}{stop}");
-        return vec![line("window", text)];
+        return vec![line("window", format!("none: the nominal start ends with {nominal}{stop}"))];
     }
     let end = |outcome: Option<Outcome>| outcome.map_or("limit of the search", Outcome::label);
     let [below, above] = [window.end_negative, window.end_positive].map(end);

@@ -78,14 +78,13 @@ impl<'a> Answer<'a> {
             (None, [task]) => trust::published(task).into_iter().map(|(found, _)| found).collect(),
             (None, _) => Vec::new(),
         };
-        let recommended = Recommended::of(record, &measured);
         let mut answer = Answer {
             record,
             verdict: Verdict::NoneFeasible,
             trust: Trust::of(record, None),
             designs: current.len(),
             feasible: current.iter().filter(|recorded| recorded.feasible().is_some()).count(),
-            recommended,
+            recommended: Recommended::of(record, &measured),
             walked: record.walked.iter().map(walked).collect(),
             front: config.objective.single().is_none().then(front),
             spread_mm: record.spread_mm(),

@@ -122,10 +122,8 @@ impl<'a> Verdict<'a> {
                     (None, Some(least_mm)) => format!("you measured {} or more", mm(*least_mm)),
                     (None, None) => "you measured no range".to_owned(),
                 };
-                format!(
-                    "Use the finger with {}, which you have printed: {measured}",
-                    finger(design)
-                )
+                let finger = finger(design);
+                format!("Use the finger with {finger}, which you have printed: {measured}")
             }
             Verdict::Choose { first, of: 1 } => {
                 format!("Print the finger with {}: best in all objectives", finger(first))
@@ -152,10 +150,8 @@ pub fn expectation(answer: &Answer) -> String {
             format!("ends with {}{stop}", outcome(found.window.nominal))
         };
         let fails = fails.as_ref().map_or("fails".to_owned(), ends);
-        return format!(
-            "the nearest to inserting, {}, {fails} at the nominal start",
-            finger(&nearest.design)
-        );
+        let nearest = finger(&nearest.design);
+        return format!("the nearest to inserting, {nearest}, {fails} at the nominal start");
     }
     match &answer.recommended {
         None => no_recommendation(answer.record),

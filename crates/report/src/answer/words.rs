@@ -120,14 +120,10 @@ pub fn success(success: &SuccessRate) -> [String; 2] {
 
 /// Returns the robust range, and number, mean and deviation of the ranges it was computed from, in words.
 pub fn robust(robust: &RobustRange) -> String {
-    format!(
-        "{}: {} windows of mean {}, deviation {}, {} diverged",
-        robust.value_mm.map_or("none".to_owned(), |value| Measure::RobustRange.show(value)),
-        robust.ranges_mm.len(),
-        number(robust.mean_mm(), 2, "mm"),
-        number(robust.sd_mm(), 2, "mm"),
-        robust.diverged
-    )
+    let value = robust.value_mm.map_or("none".to_owned(), |mm| Measure::RobustRange.show(mm));
+    let [mean, sd] = [robust.mean_mm(), robust.sd_mm()].map(|mm| number(mm, 2, "mm"));
+    let (windows, diverged) = (robust.ranges_mm.len(), robust.diverged);
+    format!("{value}: {windows} windows of mean {mean}, deviation {sd}, {diverged} diverged")
 }
 
 /// Returns a recorded design in words with its number: `10 % infill at 26° (evaluation 41)`.

@@ -235,8 +235,7 @@ fn robot(found: &Identified) -> Markup {
 fn probe((file, friction): &(String, Friction)) -> Vec<String> {
     let coefficient = friction.coefficient.map(|one| format!("{:.3} ± {:.3}", one.mean, one.sd));
     let slides = |forth: bool| {
-        let of = friction.slides.iter().filter(|slide| slide.forth == forth);
-        let words = of.map(|slide| {
+        let words = friction.slides.iter().filter(|slide| slide.forth == forth).map(|slide| {
             format!("{:.3}{}", slide.ratio, if slide.rising { " (the part turned)" } else { "" })
         });
         words.collect::<Vec<_>>().join(", ")

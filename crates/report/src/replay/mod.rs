@@ -41,8 +41,7 @@ pub fn poster_file(task: usize, end: &str) -> String {
 
 /// Returns a page that plays films side by side, offline. Its script of 18 kB replaces a library (three.js: 700 kB).
 pub fn page(title: &str, films: &[Film]) -> String {
-    let data = films.iter().map(film::data).collect();
-    player(title, &embedded(&data))
+    player(title, &embedded(&films.iter().map(film::data).collect()))
 }
 
 /// Tag before the data of a page of films.

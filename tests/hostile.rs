@@ -84,26 +84,6 @@ fn an_output_that_is_no_plain_file_is_written_in_place() {
 }
 
 #[test]
-fn a_file_in_a_missing_folder_is_refused_and_no_folder_is_made() {
-    let studies = Studies::new();
-    let finger = "--density 20 --direction 10";
-    for (line, file) in [
-        ("stiffness --svg", "s.svg"),
-        (&format!("finger {finger} --svg"), "s.svg"),
-        (&format!("export finger {finger} --format stl --out"), "f.stl"),
-        (&format!("trial --task usb --engine fake {finger} --svg"), "s.svg"),
-        (&format!("measure add --task usb {finger} --range-mm 5"), "m.csv"),
-        ("task show usb --html", "t.html"),
-        ("task tune usb --engine fake --out", "t.toml"),
-    ] {
-        let file = studies.word(&format!("new/sub/{file}"));
-        let problem = format!("{file}: there is no folder `{}`", studies.word("new/sub"));
-        optimize_line(&format!("{line} {file}")).fails(2, &[&problem]);
-    }
-    assert!(!studies.dir("new").exists());
-}
-
-#[test]
 fn twenty_reports_at_once_all_succeed() {
     let studies = Studies::new();
     studies.study("s", 12, &[]).succeeds();

@@ -51,9 +51,6 @@ impl command::Request for Request {
             tasks.map(|(subject, result)| report::calibrate::text(subject, result)).collect();
         text.push(report::calibrate::parameters_text(&found));
         if let Some(out) = &self.out {
-            std::fs::create_dir_all(out).map_err(|error| {
-                Failure::running(format!("{}: cannot create the folder: {error}", out.display()))
-            })?;
             for (subject, result) in subjects.iter().zip(&found.tasks) {
                 let name = format!("predictions_{}.csv", subject.task);
                 write_file(&out.join(name), &table::predictions_csv(subject, result))?;

@@ -9,7 +9,6 @@ use insertion::surrogate::{self, Model};
 use insertion::{FingerFile, FingerSource, Robot, stiffness};
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
-use study::check_folder;
 
 /// Default finger file.
 pub const DEFAULT_FINGER: &str = "finray9";
@@ -68,10 +67,10 @@ pub fn find(kind: &'static str, shipped: &[Shipped], name: &str) -> Result<Sourc
     shipped::resolve(kind, shipped, name).map_err(Failure::input)
 }
 
-/// Checks that a file to be written does not exist yet, but its folder does.
+/// Checks that a file to be written does not exist yet.
 pub(crate) fn check_is_new(out: &Path) -> Result<(), Failure> {
     let problem = || format!("{} exists; name another file with --out", out.display());
-    if out.exists() { Err(Failure::usage(problem())) } else { Ok(check_folder(out)?) }
+    if out.exists() { Err(Failure::usage(problem())) } else { Ok(()) }
 }
 
 /// Reads the robot of that name, or of the file at that path.

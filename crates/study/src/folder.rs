@@ -374,27 +374,15 @@ fn write_config(dir: &Path, config: &StudyConfig) -> Result<(), StudyError> {
     write_own_file(&path, &text)
 }
 
-/// Checks that the folder of a file named by the user exists.
+/// Writes a file named by the user, and its folders: see [`files::write_named`]. A text is written without
+/// control characters.
 ///
 /// # Errors
-/// If it does not.
-pub fn check_folder(path: &Path) -> Result<(), StudyError> {
-    match path.parent().filter(|folder| !folder.as_os_str().is_empty() && !folder.is_dir()) {
-        None => Ok(()),
-        Some(folder) => {
-            let problem = format!("there is no folder `{}`; create it", folder.display());
-            Err(StudyError::file(path, problem))
-        }
-    }
-}
-
-/// Writes a file named by the user to an existing folder: see [`files::write_named`]. A text is written without control
-/// characters.
-///
-/// # Errors
-/// If the folder is missing or the file cannot be written.
+/// If it cannot be written.
 pub fn write_file(path: &Path, content: &(impl AsRef<[u8]> + ?Sized)) -> Result<(), StudyError> {
-    check_folder(path)?;
+    if let Some(parent) = path.parent() {
+        fs::create_dir_all(parent).map_err(StudyError::io("create the folder", parent))?;
+    }
     files::write_named(path, &plain(content.as_ref())).map_err(StudyError::io("write", path))
 }
 

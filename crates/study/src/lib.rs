@@ -36,7 +36,7 @@ pub use config::{
 pub use confirmer::{ConfirmationLog, ConfirmationStep, Confirmer};
 pub use error::StudyError;
 pub use folder::{CELL, FINGER, Inputs, Study, has_begun, input_path, read_analysis, read_config};
-pub use folder::{check_folder, sha256, write_analysis, write_file, write_own_file};
+pub use folder::{sha256, write_analysis, write_file, write_own_file};
 pub use limits::ForceLimits;
 pub use line::{decode, encode};
 pub use on_bench::{BENCH_FILE, BenchFinger, BenchPrediction, LeaveOneOut};

@@ -15,7 +15,6 @@ use report::answer::words;
 use serde::Serialize;
 use std::io::{self, BufRead};
 use std::path::Path;
-use study::check_folder;
 
 /// Add a line to a measurement file, which is created if needed; without options it prompts for each value
 #[derive(Debug, clap::Args)]
@@ -149,7 +148,6 @@ fn add(
     // Read last, since others may have added lines meanwhile.
     let unusable = |error| Failure::in_file(file, format!("cannot add a line: {error}"));
     let unwritable = |error| Failure::running(format!("{file}: cannot write: {error}"));
-    check_folder(Path::new(file))?;
     let mut table = LockedFile::open(Path::new(file), LARGEST_INPUT).map_err(unusable)?;
     parse(table.text(), file).map_err(Failure::input)?;
     let new =

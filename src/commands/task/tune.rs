@@ -9,7 +9,7 @@ use connector::check::problems;
 use connector::tune::{Candidate, Effort, MAX_WINDOWS, Stage, Step, Tuned, Tuner, tune};
 use connector::{picture, rewrite};
 use input::Place;
-use input::shipped::Source;
+use input::shipped::{Source, TASKS};
 use input::units::{DEG, MM, N_PER_MM};
 use insertion::evaluation::INDIFFERENCE_MM;
 use insertion::task::parts_file::without_parts;
@@ -154,8 +154,8 @@ impl Request {
         Ok(found)
     }
 
-    /// Returns the task file with the recommended strategy; a file of another name gives the task that name, so that
-    /// the studies of both have different folders.
+    /// Returns the task file with the recommended strategy; a file of another name gives the task that name, unless a
+    /// shipped task has it, so that the studies of both have different folders.
     fn rewritten(&self, file: &TaskFile, tuned: &Tuned) -> Result<TaskFile, Failure> {
         let (source, strategy) = (&file.source, &tuned.best().tried.strategy);
         let mut text = rewrite::with_strategy(&source.text, strategy).map_err(Failure::input)?;
@@ -163,7 +163,9 @@ impl Request {
         let renamed = stem.filter(|stem| Path::new(&source.file).file_stem() != Some(*stem));
         if let Some(name) = renamed.and_then(OsStr::to_str) {
             let name = name.replace(|c| !is_of_name(c), "_");
-            text = rewrite::with_name(&text, &name).map_err(Failure::input)?;
+            if TASKS.iter().all(|shipped| shipped.name != name) {
+                text = rewrite::with_name(&text, &name).map_err(Failure::input)?;
+            }
         }
         TaskFile::parse(Source { file: source.file.clone(), text })
     }

@@ -106,17 +106,17 @@ pub(super) fn mass(case: &TaskBodies) -> Option<Problem> {
     let mass = case.task.plug.mass;
     let parts = case.plug.parts.iter();
     let sum: f64 = parts.clone().map(|part| geometry::volume(&part.solid)).sum();
-    // Imported parts can be the skin of a solid.
-    let corners: Vec<_> = parts.flat_map(|part| part.solid.corners()).collect();
-    let (corners, faces) = geometry::hull(&corners)?;
-    let hull = geometry::surface_moments(&corners, &faces).0;
     let [low, high] = DENSITIES;
-    let volume = [sum, hull].into_iter().find(|volume| (low..=high).contains(&(mass / volume)));
-    if volume.is_some() {
+    // Imported parts can be the skin of a solid, which lies within their hull.
+    let skin = mass / sum > high && case.task.success.mated.is_some();
+    let corners = || -> Vec<_> { parts.flat_map(|part| part.solid.corners()).collect() };
+    let hull = if skin { geometry::hull(&corners()) } else { None };
+    let hull = hull.map(|(corners, faces)| geometry::surface_moments(&corners, &faces).0);
+    let volume = hull.unwrap_or(sum);
+    let density = mass / volume;
+    if (low..=high).contains(&density) || skin && density < low {
         return None;
     }
-    let volume = if mass / sum < low { sum } else { hull };
-    let density = mass / volume;
     let [plastic, steel] = USUAL.map(|usual| usual * volume / GRAM);
     let than = if density < low { "less than foam" } else { "more than tungsten" };
     let (grams, cm3) = (mass / GRAM, volume * 1e6);

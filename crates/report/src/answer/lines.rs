@@ -360,10 +360,9 @@ pub fn most_stops(evaluation: &Evaluation) -> Option<Line> {
 }
 
 /// Returns `; ` and the number of trials that a protective stop of the robot ended, for the line of the ends; empty if
-/// there are none, or if [`most_stops`] has it.
+/// there are none.
 fn some_stops(evaluation: &Evaluation) -> String {
-    let some = (1..=evaluation.trials / 2).contains(&evaluation.robot_stops);
-    if some { format!("; {}", stops(evaluation)) } else { String::new() }
+    if evaluation.robot_stops > 0 { format!("; {}", stops(evaluation)) } else { String::new() }
 }
 
 fn stops(Evaluation { robot_stops, trials, .. }: &Evaluation) -> String {

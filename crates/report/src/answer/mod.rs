@@ -126,8 +126,12 @@ impl<'a> Answer<'a> {
         let own_mm = self.verdict.finger().and_then(|finger| self.on_robot(finger));
         let refuted = own_mm.is_none_or(|mm| mm < best_mm)
             && self.record.config.objective.measures().iter().any(of_range)
+            && !self.rank_correlations.is_empty()
             && self.rank_correlations.iter().all(unlike);
         let why = match &self.trust {
+            Trust::Simulated { .. } if self.record.config.tasks().nth(1).is_some() => {
+                "not measured yet on each task"
+            }
             Trust::Simulated { .. } => "not measured yet",
             Trust::Published { .. } if refuted => "not supported by measurements",
             _ => return None,
@@ -145,12 +149,13 @@ impl<'a> Answer<'a> {
         Some(format!("{found}, {why}: {}", words::design(self.verdict.finger()?)))
     }
 
-    /// Returns the number of designs that insert, if the range is optimized and their ranges differ by less than the
+    /// Returns the number of feasible designs that insert, if the range is optimized and their ranges differ by less than the
     /// smallest error of the simulation on the published tasks.
     fn within_error(&self) -> Option<usize> {
         let range = self.record.config.objective.single() == Some(Measure::Range);
         let [low, high] = self.spread_mm.filter(|_| range)?;
-        let of = self.record.current().iter().filter(|design| design.inserts_on_all()).count();
+        let inserts = |design: &&Recorded| design.feasible().is_some() && design.inserts_on_all();
+        let of = self.record.current().iter().filter(inserts).count();
         (of > 1 && high - low < errors_percent()[0] / 100.0 * high).then_some(of)
     }
 

@@ -59,11 +59,11 @@ pub struct Request {
     pub optimizer: OptimizerKind,
     /// Measure to optimize; two or three, separated by commas, give a Pareto front
     #[arg(long, value_name = "NAME", default_value = "range",
-          value_parser = WordParser::<Objectives>::new(Measure::ALL.map(Measure::name)))]
+          value_parser = WordParser::<Objectives>::new(Measure::all().map(Measure::name)))]
     pub objective: Objectives,
     /// Constraint, for example 'peak-force<=30' or 'success-rate>=0.9'; may be given several times
     #[arg(long = "constraint", value_name = "LIMIT", hide_possible_values = true,
-          value_parser = WordParser::<Constraint>::new(Measure::ALL.map(Measure::name)))]
+          value_parser = WordParser::<Constraint>::new(Measure::all().map(Measure::name)))]
     pub constraints: Vec<Constraint>,
     /// Errors for success-rate and robust-range: typical, or the path of a file [default: typical]
     #[arg(long, value_name = "NAME")]

@@ -202,7 +202,7 @@ impl Request {
             other(&setup.robot, DEFAULT_ROBOT),
             given(&setup.cell),
             given(&setup.stiffness_data),
-            setup.finger_model.kind.and_then(|kind| custom(&kind.name(), "paper")),
+            setup.finger_model.kind.and_then(|kind| custom(&insertion::value_name(kind), "paper")),
             custom(&setup.finger_model.finger, DEFAULT_FINGER),
             other(&self.uncertainty, DEFAULT_UNCERTAINTY),
             given(&self.measurements),

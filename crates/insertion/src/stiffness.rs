@@ -93,10 +93,7 @@ pub enum SurrogateError {
 
 impl Placed for SurrogateError {
     fn place(&self) -> Place {
-        match self {
-            SurrogateError::Fault(fault) => fault.place(),
-            _ => Place::default(),
-        }
+        if let SurrogateError::Fault(fault) = self { fault.place() } else { Place::default() }
     }
 }
 

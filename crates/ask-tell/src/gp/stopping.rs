@@ -159,17 +159,12 @@ impl<'a> StoppingCriterion<'a> {
         let Some(best) = self.best() else {
             // Nothing is confirmed before the search itself has settled, since early leaders are soon overtaken.
             let leader = self.observations.iter().filter_map(Observation::value).reduce(f64::max);
-            return match leader {
-                Some(leader) if !self.search_may_improve(leader) => {
-                    self.confirm(f64::NEG_INFINITY, rank, 1)
-                }
-                _ => Advice::Search,
-            };
+            let search = leader.is_none_or(|leader| self.search_may_improve(leader));
+            return if search { Advice::Search } else { self.confirm(f64::NEG_INFINITY, rank, 1) };
         };
-        match self.confirm(best, rank, at_once) {
-            Advice::Settled if self.search_may_improve(best) => Advice::Search,
-            advice => advice,
-        }
+        let advice = self.confirm(best, rank, at_once);
+        let search = advice == Advice::Settled && self.search_may_improve(best);
+        if search { Advice::Search } else { advice }
     }
 
     /// Returns the points to confirm next without continuing the search.
@@ -194,10 +189,9 @@ impl<'a> StoppingCriterion<'a> {
         }
         let leaders = self.confirmed.iter().filter(|confirmed| confirmed.value >= best);
         // `rank` breaks ties.
-        match leaders.min_by_key(|confirmed| rank[confirmed.index]) {
-            Some(leader) if !leader.is_final => Advice::Confirm(vec![leader.index]),
-            _ => Advice::Settled,
-        }
+        let leader = leaders.min_by_key(|confirmed| rank[confirmed.index]);
+        let open = leader.filter(|leader| !leader.is_final);
+        open.map_or(Advice::Settled, |leader| Advice::Confirm(vec![leader.index]))
     }
 
     /// Returns the median of the confirmed value of an evaluated point; `None` if it has no value.

@@ -79,9 +79,8 @@ pub(super) fn inverse_weight(scene: &Scene, body: BodyId) -> f64 {
         Motion::Free(inertia) | Motion::Carried(inertia) => inertia,
     };
     let alone = 1.0 / inertia.mass;
-    let Some(joint) = scene.joints.iter().find(|joint| joint.child == body) else {
-        return alone;
-    };
+    let joint = scene.joints.iter().find(|joint| joint.child == body);
+    let Some(joint) = joint else { return alone };
     let Springs::Axes(axes) = &joint.springs else { return alone };
     let free = axes[..3].iter().flatten().count();
     let parent_is_root = !scene.joints.iter().any(|other| other.child == joint.parent);

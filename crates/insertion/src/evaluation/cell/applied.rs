@@ -96,10 +96,8 @@ impl Evaluator {
 
     /// Returns whether task, finger or robot has the number of a parameter.
     pub fn has(&self, template: &Template, parameter: &Parameter) -> bool {
-        match parameter.path.kind() {
-            Kind::File => self.number(template, &parameter.path).is_some(),
-            _ => self.robot.fits(parameter),
-        }
+        let is_in_file = || self.number(template, &parameter.path).is_some();
+        self.robot.fits(parameter) && (parameter.path.kind() != Kind::File || is_in_file())
     }
 
     /// Checks that the task of a cell, if the evaluator has it, has the paths of the cell's parameters; `file` is named
@@ -146,10 +144,9 @@ impl Evaluator {
 
     /// Returns the number of a key in the task file, if a template is given, or in the finger file.
     fn in_file(&self, template: Option<&Template>, key: &str) -> Option<f64> {
-        template.and_then(|template| template.numbers.number(key)).or_else(|| match &self.fingers {
-            FingerSource::Paper => None,
-            FingerSource::Computed(fingers) => fingers.file.numbers.number(key),
-        })
+        let in_task = template.and_then(|template| template.numbers.number(key));
+        let FingerSource::Computed(fingers) = &self.fingers else { return in_task };
+        in_task.or_else(|| fingers.file.numbers.number(key))
     }
 
     /// Returns the parameters of the cell that apply to a task, by default the first, with their nominal values.

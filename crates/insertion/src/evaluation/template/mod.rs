@@ -44,10 +44,7 @@ pub enum DesignError {
 
 impl Placed for DesignError {
     fn place(&self) -> Place {
-        match self {
-            DesignError::Value(error) => error.place(),
-            DesignError::Rig(_) => Place::default(),
-        }
+        if let DesignError::Value(error) = self { error.place() } else { Place::default() }
     }
 }
 

@@ -150,10 +150,7 @@ impl Evaluator {
     }
 
     /// Returns the parameters of the cell that apply to a task, by default the first, with their nominal values.
-    pub(in crate::evaluation) fn rows<'a>(
-        &'a self,
-        template: Option<&'a Template>,
-    ) -> Vec<(&'a Parameter, f64)> {
+    pub(crate) fn rows(&self, template: Option<&Template>) -> Vec<(&Parameter, f64)> {
         let Some(cell) = &self.cell else { return Vec::new() };
         let task = template.or(self.templates.first()).map_or("", |template| &template.task.name);
         cell.of(task).map(|row| (row, row.middle())).collect()

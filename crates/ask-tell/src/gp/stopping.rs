@@ -10,7 +10,8 @@ use super::data::{Standardised, evenly_spaced, standardise};
 use super::fit::{FitEffort, fit};
 use super::model::Gp;
 use super::optimizer::DEFAULT_NOISE_FLOOR;
-use super::search::SearchRegion;
+use super::search::{EXHAUSTIVE, SearchRegion};
+use super::training::{INCUMBENTS, MAX_FITTED};
 use crate::process::{Process, distance2, matern52};
 use crate::proposed::ProposedPoints;
 use crate::statistics::{normal_log_cdf, normal_pdf};
@@ -22,14 +23,8 @@ use nalgebra::{DMatrix, DVector};
 /// with the diagonal. It is fixed because length scales fitted to the few known drops were too long: one
 /// large drop was extrapolated to the whole space (`docs/notes/optimizers.md`).
 const DROP_LENGTH: f64 = 0.15;
-/// Largest number of points to which hyperparameters are fitted.
-const MAX_FITTED: usize = 200;
-/// Grids up to this size are searched exhaustively, larger ones at a sample of candidates.
-const EXHAUSTIVE: u64 = 20_000;
-/// Size of that sample.
+/// Number of candidates sampled from a grid that is too large to be searched completely.
 const CANDIDATES: usize = 6000;
-/// Number of best points around which candidates are drawn.
-const INCUMBENTS: usize = 4;
 /// Probability below which a gain is disregarded.
 const MIN_PROBABILITY: f64 = 0.02;
 /// Nodes (in standard deviations) and weights of the Gauss-Hermite rule of five points.
@@ -123,10 +118,8 @@ impl<'a> StoppingCriterion<'a> {
         let known: Vec<(usize, f64)> = self.confirmed.iter().filter_map(drop).collect();
         let square = known.iter().map(|(_, drop)| drop * drop).sum::<f64>() / known.len() as f64;
         let signal = square.max(self.least_gain * self.least_gain);
-        let x: Vec<Vec<f64>> = known
-            .iter()
-            .map(|&(at, _)| self.grid.free_unit(&self.observations[at].point))
-            .collect();
+        let place = |&(at, _): &(usize, f64)| self.grid.free_unit(&self.observations[at].point);
+        let x: Vec<Vec<f64>> = known.iter().map(place).collect();
         let length = DROP_LENGTH * sqrt(x.first()?.len() as f64 / 2.0);
         let covariance = |i: usize, j: usize| {
             let noise = if i == j { DEFAULT_NOISE_FLOOR * DEFAULT_NOISE_FLOOR } else { 0.0 };

@@ -43,10 +43,8 @@ pub(super) fn pairs(scene: &Scene, settings: &MjcfSettings) -> Element {
         // Friction has no gap, so its stiffness has no effect; MuJoCo requires a negative number.
         let friction = [solref[0], -settings.friction_rate * impedance];
         let element = Element::new("pair").with("geom1", &names[pair.first]);
-        let element = match margins[pair.first] + margins[pair.second] {
-            0.0 => element,
-            margin => element.with("margin", margin),
-        };
+        let margin = margins[pair.first] + margins[pair.second];
+        let element = if margin == 0.0 { element } else { element.with("margin", margin) };
         with_friction(element.with("geom2", &names[pair.second]), pair.friction)
             .numbers("solref", solref)
             .numbers("solreffriction", friction)

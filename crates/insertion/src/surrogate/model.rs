@@ -167,9 +167,8 @@ pub fn fit(measurements: &[Measurement], finger: &PrintedFinger) -> Result<Model
     };
     let computed = computed::ComputedStiffness::new(finger);
     let choose = |axis| {
-        let unit = |m: &Measurement| match ratios {
-            true => computed.stiffness(axis, m.infill()),
-            false => Ok(1.0),
+        let unit = |m: &Measurement| {
+            if ratios { computed.stiffness(axis, m.infill()) } else { Ok(1.0) }
         };
         let units = measurements.iter().map(unit).collect::<Result<_, InputError>>()?;
         choose(&AxisData::new(axis, measurements, units), kinds)

@@ -78,10 +78,8 @@ impl Robot {
     pub fn change(&mut self, parameter: &Parameter, value: f64) {
         let (numbers, unit) = self.numbers(&parameter.path);
         let Some(own) = numbers.first().map(|number| **number / unit) else { return };
-        let factor = match parameter.transform {
-            Transform::Factor => value,
-            Transform::Shift | Transform::Value => parameter.applied(own, value) / own,
-        };
+        let ratio = parameter.applied(own, value) / own;
+        let factor = if parameter.transform == Transform::Factor { value } else { ratio };
         numbers.into_iter().for_each(|number| *number *= factor);
     }
 }

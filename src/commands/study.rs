@@ -59,11 +59,11 @@ pub struct Request {
     pub optimizer: OptimizerKind,
     /// Measure to optimize; two or three, separated by commas, give a Pareto front
     #[arg(long, value_name = "NAME", default_value = "range",
-          value_parser = WordParser::<Objectives>::new(Measure::ALL.map(Measure::name)))]
+          value_parser = WordParser::<Objectives>::new(Measure::all().map(Measure::name)))]
     pub objective: Objectives,
     /// Constraint, for example 'peak-force<=30' or 'success-rate>=0.9'; may be given several times
     #[arg(long = "constraint", value_name = "LIMIT", hide_possible_values = true,
-          value_parser = WordParser::<Constraint>::new(Measure::ALL.map(Measure::name)))]
+          value_parser = WordParser::<Constraint>::new(Measure::all().map(Measure::name)))]
     pub constraints: Vec<Constraint>,
     /// Errors for success-rate and robust-range: typical, or the path of a file [default: typical]
     #[arg(long, value_name = "NAME")]
@@ -202,7 +202,7 @@ impl Request {
             other(&setup.robot, DEFAULT_ROBOT),
             given(&setup.cell),
             given(&setup.stiffness_data),
-            setup.finger_model.kind.and_then(|kind| custom(&kind.name(), "paper")),
+            setup.finger_model.kind.and_then(|kind| custom(&insertion::value_name(kind), "paper")),
             custom(&setup.finger_model.finger, DEFAULT_FINGER),
             other(&self.uncertainty, DEFAULT_UNCERTAINTY),
             given(&self.measurements),

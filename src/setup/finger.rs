@@ -230,7 +230,7 @@ impl Serialize for ChosenFinger {
             "infill_density_percent": self.design.get(DENSITY_KEY),
             "infill_direction_deg": self.design.get(DIRECTION_KEY),
             "set": self.set,
-            "finger_model": self.finger_model.name(),
+            "finger_model": self.finger_model,
             "rcc_mm": finger.rcc / MM,
             "rcc_from": self.scenario.centre_source(),
             "tilting_nm_per_rad": finger.rotation[0],

@@ -65,8 +65,8 @@ fn task_role(number: usize) -> String {
 impl Setup {
     /// Returns the setup of the input copies in a study's folder.
     pub(crate) fn from_inputs(inputs: &Inputs, engine: &str) -> Result<Self, Failure> {
-        let engine = EngineKind::from_name(engine)
-            .ok_or_else(|| bad_config(format!("unknown engine `{engine}`")))?;
+        let engine = <EngineKind as clap::ValueEnum>::from_str(engine, false)
+            .map_err(|_| bad_config(format!("unknown engine `{engine}`")))?;
         let task = |number| input(inputs, &task_role(number)).ok();
         let tasks: Vec<Source> = (1..).map_while(task).collect();
         let space = input(inputs, SPACE)?;

@@ -56,13 +56,11 @@ impl Optimizer for Polished {
     }
 
     fn tell(&mut self, observations: &[Observation]) {
-        match &mut self.polish {
-            Some(polish) => polish.tell(observations),
-            None => {
-                self.inner.tell(observations);
-                self.told.extend_from_slice(observations);
-            }
+        if let Some(polish) = &mut self.polish {
+            return polish.tell(observations);
         }
+        self.inner.tell(observations);
+        self.told.extend_from_slice(observations);
     }
 
     fn stop(&self) -> Option<StopReason> {

@@ -32,10 +32,7 @@ pub struct Moments {
 
 impl Moments {
     /// Returns the moments of the values. The iterator is cloned and traversed more than once.
-    pub fn of<I>(values: I) -> Self
-    where
-        I: IntoIterator<Item: Borrow<f64>, IntoIter: Clone>,
-    {
+    pub fn of(values: impl IntoIterator<Item: Borrow<f64>, IntoIter: Clone>) -> Self {
         let values = values.into_iter().map(|value| *value.borrow());
         let count = values.clone().count() as f64;
         let mean = values.clone().sum::<f64>() / count;

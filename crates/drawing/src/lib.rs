@@ -34,10 +34,8 @@ impl Drawing {
     /// this size; otherwise the viewer chooses the size.
     pub fn svg(self, [width, height]: [f64; 2], unit: &str) -> String {
         let [wide, high] = [width, height].map(rounded);
-        let size = match unit {
-            "" => String::new(),
-            unit => format!(" width=\"{wide}{unit}\" height=\"{high}{unit}\""),
-        };
+        let size = format!(" width=\"{wide}{unit}\" height=\"{high}{unit}\"");
+        let size = if unit.is_empty() { "" } else { &size };
         format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\"{size} viewBox=\"0 0 {wide} {high}\" \
              font-family=\"sans-serif\" fill-rule=\"evenodd\">\n{}</svg>\n",

@@ -164,9 +164,8 @@ fn check_ribs(check: Check<'_>, finger: &PrintedFinger, design: &InfillDesign) -
         return check.fail("ribs.thickness_mm", problem);
     }
     let walls = [("ribs.thickness_mm", ribs.thickness), ("skin.thickness_mm", *skin)];
-    let Some((key, thickness)) = walls.into_iter().find(|(_, t)| *t < 0.5 * line_width) else {
-        return Ok(());
-    };
+    let thin = walls.into_iter().find(|(_, thickness)| *thickness < 0.5 * line_width);
+    let Some((key, thickness)) = thin else { return Ok(()) };
     let problem = format!(
         "is {:.3}; a line of print.line_width_mm = {:.3} does not print thinner than half of it",
         thickness / MM,

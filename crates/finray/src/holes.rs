@@ -6,7 +6,7 @@ use crate::outline::Outline;
 use crate::printed::PrintedFinger;
 use input::units::{self, MM, mm};
 use input::{Check, InputError};
-use nalgebra::Point2;
+use nalgebra::{Point2, Vector2};
 use serde::Deserialize;
 use std::f64::consts::{PI, TAU};
 
@@ -123,13 +123,11 @@ impl Holes {
         let [u, v] = self.axis.across().map(|direction| direction as usize);
         // A multiple of four, so that calipers measure between corners along both axes.
         let flats = 4 * (PI / libm::acos(1.0 - FLAT / radius) / 4.0).ceil() as u32;
-        let angle = |i: u32| -TAU * f64::from(i) / f64::from(flats);
-        let ring = |middle: [f64; 3]| {
-            let corner = |a: f64| {
-                Point2::new(middle[u] + radius * libm::cos(a), middle[v] + radius * libm::sin(a))
-            };
-            (0..flats).map(|i| corner(angle(i))).collect()
+        let offset = |i: u32| {
+            let angle = -TAU * f64::from(i) / f64::from(flats);
+            Vector2::new(libm::cos(angle), libm::sin(angle)) * radius
         };
+        let ring = |p: [f64; 3]| (0..flats).map(|i| Point2::new(p[u], p[v]) + offset(i)).collect();
         self.centres(outline).into_iter().map(ring).collect()
     }
 

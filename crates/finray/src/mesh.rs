@@ -1,6 +1,6 @@
 //! Meshes of a polygon with holes: triangles with six nodes.
 
-use super::polygon::Ring;
+use super::polygon::{Ring, cycles};
 use nalgebra::Point2;
 use spade::{
     AngleLimit, ConstrainedDelaunayTriangulation, Point2 as Site, RefinementParameters,
@@ -141,23 +141,11 @@ impl Mesh {
             self.triangles.iter().flat_map(of)
         };
         let inside: BTreeSet<_> = sides().map(|(from, _, to)| (to, from)).collect();
-        // From a corner on the boundary: the side's middle and the next corner.
-        let mut next: Vec<Option<(u32, u32)>> = vec![None; self.nodes.len()];
+        let mut next = vec![None; self.nodes.len()];
         for (from, middle, to) in sides().filter(|(from, _, to)| !inside.contains(&(*from, *to))) {
-            next[from as usize] = Some((middle, to));
+            next[from as usize] = Some(middle as usize);
+            next[middle as usize] = Some(to as usize);
         }
-        let mut rings = Vec::new();
-        for start in 0..next.len() {
-            let mut ring = Vec::new();
-            let mut at = start;
-            while let Some((middle, to)) = next[at].take() {
-                ring.extend([at, middle as usize]);
-                at = to as usize;
-            }
-            if !ring.is_empty() {
-                rings.push(ring);
-            }
-        }
-        rings
+        cycles(next)
     }
 }

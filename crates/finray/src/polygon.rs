@@ -95,20 +95,24 @@ impl HalfPlane {
                 next[from] = Some(to);
             }
         }
-        let mut rings = Vec::new();
-        for first in 0..chains.len() {
-            let mut ring = Ring::new();
-            let mut at = first;
-            while let Some(to) = next[at].take() {
-                ring.extend_from_slice(&chains[at]);
-                at = to;
-            }
-            if ring.len() > 2 {
-                rings.push(ring);
-            }
-        }
-        rings
+        let joined = |ring: Vec<usize>| ring.iter().flat_map(|&i| &chains[i]).copied().collect();
+        let rings = cycles(next).into_iter().map(joined);
+        rings.filter(|ring: &Ring| ring.len() > 2).collect()
     }
+}
+
+/// Returns the cycles of a chain of indices, in which each index leads to the `next`.
+pub(super) fn cycles(mut next: Vec<Option<usize>>) -> Vec<Vec<usize>> {
+    let mut cycles = vec![Vec::new(); next.len()];
+    for (start, cycle) in cycles.iter_mut().enumerate() {
+        let mut at = start;
+        while let Some(to) = next[at].take() {
+            cycle.push(at);
+            at = to;
+        }
+    }
+    cycles.retain(|cycle| !cycle.is_empty());
+    cycles
 }
 
 /// Returns the ring without corners that lie within `distance` of the previous one.

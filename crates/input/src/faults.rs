@@ -30,10 +30,8 @@ fn fault(file: &str, text: &str, mut error: Error, near: Option<&str>) -> InputE
     let place = Place { line, ..Place::file(file) };
     let plain = error.to_string();
     // Without a text, the message ends with the path of the table or value.
-    let (problem, path) = match plain.trim_end().rsplit_once("\nin `") {
-        Some((problem, path)) => (problem, path.trim_end_matches('`')),
-        None => (plain.trim_end(), ""),
-    };
+    let (problem, path) = plain.trim_end().rsplit_once("\nin `").unwrap_or((plain.trim_end(), ""));
+    let path = path.trim_end_matches('`');
     if text.is_empty() {
         return place.key(path).fault(problem.to_owned() + &hint);
     }

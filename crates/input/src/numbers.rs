@@ -120,22 +120,16 @@ pub fn unknown_path(path: &str, paths: &[&str]) -> String {
     let near = nearest_path(path, paths).map(|near| format!("; did you mean `{near}`?"));
     let hint = near.as_deref().unwrap_or(";");
     let unknown = format!("unknown path `{path}`");
-    let mut end = path.len();
-    loop {
-        let prefix = if end == 0 { String::new() } else { format!("{}.", &path[..end]) };
-        let next = |other: &&str| Some(other.strip_prefix(&prefix)?.split('.').next()?.to_owned());
-        let next: BTreeSet<String> = paths.iter().filter_map(next).collect();
-        let names: Vec<String> = next.into_iter().collect();
-        match (end, names.split_last()) {
-            (0, Some((last, others))) => {
-                let others = others.join(", ");
-                return format!("{unknown}{hint} a path begins with {others} or {last}");
-            }
-            (_, Some(_)) => {
-                return format!("{unknown}{hint} `{prefix}` continues with {}", names.join(", "));
-            }
-            (0, None) => return unknown,
-            (_, None) => end = path[..end].rfind('.').unwrap_or(0),
-        }
+    let next = |prefix: &str| -> Vec<&str> {
+        let words = paths.iter().filter_map(|other| other.strip_prefix(prefix)?.split('.').next());
+        words.collect::<BTreeSet<_>>().into_iter().collect()
+    };
+    let ends = path.rmatch_indices('.').map(|(end, _)| end);
+    let mut prefixes = [path.len()].into_iter().chain(ends).map(|end| format!("{}.", &path[..end]));
+    if let Some(prefix) = prefixes.find(|prefix| !next(prefix).is_empty()) {
+        return format!("{unknown}{hint} `{prefix}` continues with {}", next(&prefix).join(", "));
     }
+    let words = next("");
+    let Some((last, others)) = words.split_last() else { return unknown };
+    format!("{unknown}{hint} a path begins with {} or {last}", others.join(", "))
 }

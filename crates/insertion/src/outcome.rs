@@ -117,10 +117,8 @@ impl Outcome {
 impl fmt::Display for Outcome {
     /// `inserted`, `diverged` or `failed: jammed (class 3)`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self.class() {
-            Some(class) => write!(f, "failed: {} (class {})", class.label(), class.number()),
-            None => f.write_str(self.word()),
-        }
+        let Some(class) = self.class() else { return f.write_str(self.word()) };
+        write!(f, "failed: {} (class {})", class.label(), class.number())
     }
 }
 

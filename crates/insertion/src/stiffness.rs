@@ -93,10 +93,7 @@ pub enum SurrogateError {
 
 impl Placed for SurrogateError {
     fn place(&self) -> Place {
-        match self {
-            SurrogateError::Fault(fault) => fault.place(),
-            _ => Place::default(),
-        }
+        if let SurrogateError::Fault(fault) = self { fault.place() } else { Place::default() }
     }
 }
 
@@ -152,8 +149,11 @@ fn rows(text: &str, file: &str) -> Result<Vec<Measurement>, SurrogateError> {
         check(&measurement, &measurements).map_err(&error)?;
         measurements.push(measurement);
     }
-    check_count(&measurements)?;
-    Ok(measurements)
+    match measurements.len() {
+        0 => Err(SurrogateError::Empty),
+        count if count > MAX_DESIGNS => Err(SurrogateError::TooMany(count)),
+        _ => Ok(measurements),
+    }
 }
 
 /// Ratio of the medians of a file and of the shipped fingers above which another unit is assumed.
@@ -180,26 +180,9 @@ fn check_units(own: Vec<Measurement>, file: &str) -> Result<Vec<Measurement>, Su
     Ok(own)
 }
 
-/// Checks measurements that were not read from a file.
-pub(crate) fn check_all(measurements: &[Measurement]) -> Result<(), SurrogateError> {
-    for (i, measurement) in measurements.iter().enumerate() {
-        let error = column_error(Place::file(format!("design {}", measurement.design)));
-        check(measurement, &measurements[..i]).map_err(error)?;
-    }
-    check_count(measurements)
-}
-
 /// Returns a function that converts a column and its problem to an error at a place.
 fn column_error(place: Place) -> impl Fn((&'static str, String)) -> SurrogateError {
     move |(column, problem)| place.clone().key(column).fault(problem).into()
-}
-
-fn check_count(measurements: &[Measurement]) -> Result<(), SurrogateError> {
-    match measurements.len() {
-        0 => Err(SurrogateError::Empty),
-        count if count > MAX_DESIGNS => Err(SurrogateError::TooMany(count)),
-        _ => Ok(()),
-    }
 }
 
 fn measurement(record: &csv::StringRecord) -> Result<Measurement, (&'static str, String)> {

@@ -28,13 +28,11 @@ impl Path {
         let whole = if in_task { format!("task.{text}") } else { text.clone() };
         let variable = |(_, number): &(String, &NumberSpec)| number.kind != Kind::Fixed;
         let known: Vec<_> = filled_paths(&whole).filter(variable).collect();
-        match known.iter().find(|(path, _)| *path == text) {
-            Some((_, number)) => Ok(Path { text, number }),
-            None => {
-                let known: Vec<&str> = known.iter().map(|(path, _)| path.as_str()).collect();
-                Err(unknown_path(&text, &known))
-            }
-        }
+        let Some((_, number)) = known.iter().find(|(path, _)| *path == text) else {
+            let known: Vec<&str> = known.iter().map(|(path, _)| path.as_str()).collect();
+            return Err(unknown_path(&text, &known));
+        };
+        Ok(Path { text, number })
     }
 
     /// Returns the kind of the number.

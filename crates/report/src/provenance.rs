@@ -141,7 +141,7 @@ fn provenance(record: &StudyRecord) -> Markup {
     add("study", config.name());
     add("task", config.task_name());
     add("robot", config.robot.clone());
-    add("finger model", config.finger_model.name());
+    add("finger model", insertion::value_name(config.finger_model));
     add("optimizer", config.method());
     add("objective", config.objective.to_string());
     add("seed", config.seed.to_string());

@@ -58,8 +58,8 @@ impl GpOptimizer {
         self.proposed.grid.free_unit(point)
     }
 
-    /// Returns the models for an ask of `n` points, fitted and conditioned only if the data have
-    /// changed.
+    /// Returns the models for an ask of `n` points, fitted only if the data have changed and conditioned on the
+    /// pending points.
     fn train(&mut self, n: usize) -> Option<(Model, Vec<GridPoint>)> {
         let global = self.told.len() + self.pending.len() + n <= MAX_GLOBAL_POINTS;
         let fits = |(model, _): &(Model, _)| matches!(model, Model::Global(_)) == global;
@@ -67,7 +67,11 @@ impl GpOptimizer {
             let x: Vec<Vec<f64>> = self.told.iter().map(|o| self.unit(&o.point)).collect();
             self.model = self.training.model(&self.told, x, global);
         }
-        self.model.clone()
+        let (mut model, incumbents) = self.model.clone()?;
+        for point in &self.pending {
+            model.believe(&self.unit(point));
+        }
+        Some((model, incumbents))
     }
 }
 
@@ -79,19 +83,10 @@ impl Optimizer for GpOptimizer {
         while points.len() < n && !self.proposed.exhausted() {
             let mut found = None;
             if self.proposed.len() >= (free + 1).max(3) && free > 0 {
-                if model.is_none() {
-                    model = self.train(n);
-                    if let Some((model, _)) = &mut model {
-                        for point in &self.pending {
-                            model.believe(&self.unit(point));
-                        }
-                    }
+                model = model.or_else(|| self.train(n));
+                if let Some((model, incumbents)) = &model {
+                    found = model.suggest(SearchRegion { proposed: &self.proposed, incumbents });
                 }
-                let proposed = &self.proposed;
-                let suggest = |(model, incumbents): &(Model, Vec<GridPoint>)| {
-                    model.suggest(SearchRegion { proposed, incumbents })
-                };
-                found = model.as_ref().and_then(suggest);
             }
             if found.is_none() {
                 let grid = &self.proposed.grid;

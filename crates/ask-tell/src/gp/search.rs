@@ -10,8 +10,8 @@ use crate::{Grid, GridPoint};
 use rand::RngExt;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Grids up to this size are searched completely.
-const EXHAUSTIVE: u64 = 20_000;
+/// Grids up to this size are searched completely, larger ones at a sample of candidates.
+pub(super) const EXHAUSTIVE: u64 = 20_000;
 /// Largest product of grid size and number of observations for a complete search (about ten milliseconds).
 const EXHAUSTIVE_WORK: u64 = 1_000_000;
 /// Number of candidates that are improved by local search.

@@ -10,7 +10,8 @@ use super::data::{Standardised, evenly_spaced, standardise};
 use super::fit::{FitEffort, fit};
 use super::model::Gp;
 use super::optimizer::DEFAULT_NOISE_FLOOR;
-use super::search::SearchRegion;
+use super::search::{EXHAUSTIVE, SearchRegion};
+use super::training::{INCUMBENTS, MAX_FITTED};
 use crate::process::{Process, distance2, matern52};
 use crate::proposed::ProposedPoints;
 use crate::statistics::{normal_log_cdf, normal_pdf};
@@ -22,14 +23,8 @@ use nalgebra::{DMatrix, DVector};
 /// with the diagonal. It is fixed because length scales fitted to the few known drops were too long: one
 /// large drop was extrapolated to the whole space (`docs/notes/optimizers.md`).
 const DROP_LENGTH: f64 = 0.15;
-/// Largest number of points to which hyperparameters are fitted.
-const MAX_FITTED: usize = 200;
-/// Grids up to this size are searched exhaustively, larger ones at a sample of candidates.
-const EXHAUSTIVE: u64 = 20_000;
-/// Size of that sample.
+/// Number of candidates sampled from a grid that is too large to be searched completely.
 const CANDIDATES: usize = 6000;
-/// Number of best points around which candidates are drawn.
-const INCUMBENTS: usize = 4;
 /// Probability below which a gain is disregarded.
 const MIN_PROBABILITY: f64 = 0.02;
 /// Nodes (in standard deviations) and weights of the Gauss-Hermite rule of five points.
@@ -123,10 +118,8 @@ impl<'a> StoppingCriterion<'a> {
         let known: Vec<(usize, f64)> = self.confirmed.iter().filter_map(drop).collect();
         let square = known.iter().map(|(_, drop)| drop * drop).sum::<f64>() / known.len() as f64;
         let signal = square.max(self.least_gain * self.least_gain);
-        let x: Vec<Vec<f64>> = known
-            .iter()
-            .map(|&(at, _)| self.grid.free_unit(&self.observations[at].point))
-            .collect();
+        let place = |&(at, _): &(usize, f64)| self.grid.free_unit(&self.observations[at].point);
+        let x: Vec<Vec<f64>> = known.iter().map(place).collect();
         let length = DROP_LENGTH * sqrt(x.first()?.len() as f64 / 2.0);
         let covariance = |i: usize, j: usize| {
             let noise = if i == j { DEFAULT_NOISE_FLOOR * DEFAULT_NOISE_FLOOR } else { 0.0 };
@@ -159,17 +152,12 @@ impl<'a> StoppingCriterion<'a> {
         let Some(best) = self.best() else {
             // Nothing is confirmed before the search itself has settled, since early leaders are soon overtaken.
             let leader = self.observations.iter().filter_map(Observation::value).reduce(f64::max);
-            return match leader {
-                Some(leader) if !self.search_may_improve(leader) => {
-                    self.confirm(f64::NEG_INFINITY, rank, 1)
-                }
-                _ => Advice::Search,
-            };
+            let search = leader.is_none_or(|leader| self.search_may_improve(leader));
+            return if search { Advice::Search } else { self.confirm(f64::NEG_INFINITY, rank, 1) };
         };
-        match self.confirm(best, rank, at_once) {
-            Advice::Settled if self.search_may_improve(best) => Advice::Search,
-            advice => advice,
-        }
+        let advice = self.confirm(best, rank, at_once);
+        let search = advice == Advice::Settled && self.search_may_improve(best);
+        if search { Advice::Search } else { advice }
     }
 
     /// Returns the points to confirm next without continuing the search.
@@ -194,10 +182,9 @@ impl<'a> StoppingCriterion<'a> {
         }
         let leaders = self.confirmed.iter().filter(|confirmed| confirmed.value >= best);
         // `rank` breaks ties.
-        match leaders.min_by_key(|confirmed| rank[confirmed.index]) {
-            Some(leader) if !leader.is_final => Advice::Confirm(vec![leader.index]),
-            _ => Advice::Settled,
-        }
+        let leader = leaders.min_by_key(|confirmed| rank[confirmed.index]);
+        let open = leader.filter(|leader| !leader.is_final);
+        open.map_or(Advice::Settled, |leader| Advice::Confirm(vec![leader.index]))
     }
 
     /// Returns the median of the confirmed value of an evaluated point; `None` if it has no value.

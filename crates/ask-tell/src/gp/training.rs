@@ -12,11 +12,11 @@ use crate::{GridPoint, Observation};
 use std::collections::BTreeSet;
 
 /// Number of incumbents, around which the acquisition is searched more closely.
-const INCUMBENTS: usize = 4;
+pub(super) const INCUMBENTS: usize = 4;
 /// Number of points with the largest values whose posterior means are compared if the models are local.
 const LEADERS: usize = 16;
 /// Largest number of observations to which the hyperparameters are fitted.
-const MAX_FITTED: usize = 200;
+pub(super) const MAX_FITTED: usize = 200;
 /// Beyond [`MAX_FITTED`] observations the hyperparameters are refitted when their number has grown by the fraction
 /// `1 / REFIT`.
 const REFIT: usize = 20;

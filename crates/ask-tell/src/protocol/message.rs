@@ -37,10 +37,7 @@ pub(super) enum Direction {
 impl Direction {
     /// Converts an objective value to a merit (larger is better).
     pub fn merit(self, value: f64) -> f64 {
-        match self {
-            Direction::Minimize => -value,
-            Direction::Maximize => value,
-        }
+        if matches!(self, Direction::Minimize) { -value } else { value }
     }
 }
 

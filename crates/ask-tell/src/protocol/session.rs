@@ -42,25 +42,20 @@ impl Session {
     /// # Errors
     /// If the line is not accepted. The session is then unchanged.
     pub fn answer(&mut self, line: &str) -> Result<Option<String>, String> {
-        let answer = match (Line::parse(line)?, &mut self.search) {
+        match (Line::parse(line)?, &mut self.search) {
             (Line::Problem(problem), None) => {
                 self.search = Some(Search::new(problem)?);
-                return Ok(None);
+                Ok(None)
             }
             (Line::Problem(_), Some(_)) => {
-                return Err(
-                    "the problem is already defined; start another process for another".to_owned()
-                );
+                Err("the problem is already defined; start another process for another".to_owned())
             }
-            (_, None) => {
-                return Err("the first line must be {\"parameters\":[..],\"optimizer\":..,\
-                            \"seed\":..,\"direction\":..}"
-                    .to_owned());
-            }
-            (Line::Ask(n), Some(search)) => json!({"asked": search.ask(n)?}),
-            (Line::Tell(results), Some(search)) => search.tell(results)?,
-        };
-        Ok(Some(answer.to_string()))
+            (_, None) => Err("the first line must be {\"parameters\":[..],\"optimizer\":..,\
+                              \"seed\":..,\"direction\":..}"
+                .to_owned()),
+            (Line::Ask(n), Some(search)) => Ok(Some(json!({"asked": search.ask(n)?}).to_string())),
+            (Line::Tell(results), Some(search)) => Ok(Some(search.tell(results)?.to_string())),
+        }
     }
 }
 
@@ -99,14 +94,14 @@ impl Search {
         const SHOWN: usize = 8;
         let open = (self.first..self.asked).filter(|&id| self.proposals[id].merit.is_none());
         let ids: Vec<String> = open.map(|id| id.to_string()).collect();
-        let (shown, more) = (ids[..ids.len().min(SHOWN)].join(", "), ids.len() > SHOWN);
-        match ids.is_empty() {
-            true => Ok(()),
-            false => Err(format!(
-                "ask: tell the values of ids {shown}{} first (null for a failed evaluation)",
-                if more { ", .." } else { "" }
-            )),
+        if ids.is_empty() {
+            return Ok(());
         }
+        let shown = ids[..ids.len().min(SHOWN)].join(", ");
+        let more = if ids.len() > SHOWN { ", .." } else { "" };
+        Err(format!(
+            "ask: tell the values of ids {shown}{more} first (null for a failed evaluation)"
+        ))
     }
 
     /// Returns the number of results, the best result so far, and the stop reason if the search has ended.

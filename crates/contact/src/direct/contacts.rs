@@ -213,10 +213,8 @@ impl Solid {
     /// Returns the core, in parry's frame, and the radius, mm; without round edges, the shape itself and 0. `None` if
     /// parry has no support function for the shape.
     fn core(&self) -> Option<(&dyn SupportMap, f64)> {
-        match &self.round {
-            Some((core, radius)) => Some((core, *radius)),
-            None => Some((self.shape.as_support_map()?, 0.0)),
-        }
+        let round = self.round.as_ref().map(|(core, radius)| (core as &dyn SupportMap, *radius));
+        round.or_else(|| Some((self.shape.as_support_map()?, 0.0)))
     }
 
     /// Updates enclosing box and bounding box in the world for a pose of the body.

@@ -101,10 +101,8 @@ impl SpringJoint {
     pub fn friction(&self, bodies: &[MovingBody]) -> Vector3<f64> {
         let Springs::Axes(axes) = &self.joint.springs else { return Vector3::zeros() };
         let Some(Spring { damping, limit, .. }) = axes[ALONG] else { return Vector3::zeros() };
-        let force = match self.saturated[ALONG] {
-            0.0 => -damping * self.rate(bodies)[ALONG],
-            sign => sign * limit,
-        };
+        let sign = self.saturated[ALONG];
+        let force = if sign == 0.0 { -damping * self.rate(bodies)[ALONG] } else { sign * limit };
         bodies[self.joint.parent.0].pose.rotation * Vector3::z() * force
     }
 

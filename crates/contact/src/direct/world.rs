@@ -170,9 +170,8 @@ impl DirectWorld {
 
     /// Sets the limit of the axial friction for the current poses.
     fn update_axial_friction(&mut self) {
-        let (Some(axial), Some(joint)) = (&self.axial_friction, self.joints.last_mut()) else {
-            return;
-        };
+        let Some(axial) = &self.axial_friction else { return };
+        let Some(joint) = self.joints.last_mut() else { return };
         let [parent, child] = [axial.parent, axial.child].map(|body| &self.bodies[body.0].pose);
         joint.set_friction(axial.limit(parent, child), self.settings.stick_damping);
     }

@@ -43,10 +43,8 @@ pub(super) fn pairs(scene: &Scene, settings: &MjcfSettings) -> Element {
         // Friction has no gap, so its stiffness has no effect; MuJoCo requires a negative number.
         let friction = [solref[0], -settings.friction_rate * impedance];
         let element = Element::new("pair").with("geom1", &names[pair.first]);
-        let element = match margins[pair.first] + margins[pair.second] {
-            0.0 => element,
-            margin => element.with("margin", margin),
-        };
+        let margin = margins[pair.first] + margins[pair.second];
+        let element = if margin == 0.0 { element } else { element.with("margin", margin) };
         with_friction(element.with("geom2", &names[pair.second]), pair.friction)
             .numbers("solref", solref)
             .numbers("solreffriction", friction)
@@ -79,9 +77,8 @@ pub(super) fn inverse_weight(scene: &Scene, body: BodyId) -> f64 {
         Motion::Free(inertia) | Motion::Carried(inertia) => inertia,
     };
     let alone = 1.0 / inertia.mass;
-    let Some(joint) = scene.joints.iter().find(|joint| joint.child == body) else {
-        return alone;
-    };
+    let joint = scene.joints.iter().find(|joint| joint.child == body);
+    let Some(joint) = joint else { return alone };
     let Springs::Axes(axes) = &joint.springs else { return alone };
     let free = axes[..3].iter().flatten().count();
     let parent_is_root = !scene.joints.iter().any(|other| other.child == joint.parent);

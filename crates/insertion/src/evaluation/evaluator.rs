@@ -5,11 +5,10 @@ use super::robustness::firm::{self, FirmResult};
 use super::robustness::race::Race;
 use super::robustness::repeat::Repeats;
 use super::robustness::{self, Drawn, Plan};
-use super::shape_correction;
 use super::taught::{Shifted, teach};
 use super::template::{DesignError, Template};
 use super::tolerance::Search;
-use super::{Evaluation, OffsetStep};
+use super::{Evaluation, OffsetStep, shape_correction};
 use crate::finger::model::{CentreSource, RCC_KEY};
 use crate::surrogate::Model;
 use crate::trial::run::RigError;
@@ -116,14 +115,10 @@ impl Evaluator {
     pub fn predict(&self, design: &Design) -> Result<Prediction, DesignError> {
         let value = |key| design.get(key).unwrap_or(f64::NAN);
         let infill = self.surrogate.predict([DENSITY_KEY, DIRECTION_KEY].map(value))?;
-        match &self.fingers {
-            FingerSource::Paper => Ok(infill),
-            FingerSource::Computed(fingers) => {
-                let measured = &self.surrogate.measurements;
-                let design = &self.completed(None, design, &self.rows(None));
-                Ok(shape_correction::predict(fingers, measured, design, infill)?)
-            }
-        }
+        let FingerSource::Computed(fingers) = &self.fingers else { return Ok(infill) };
+        let measured = &self.surrogate.measurements;
+        let design = &self.completed(None, design, &self.rows(None));
+        Ok(shape_correction::predict(fingers, measured, design, infill)?)
     }
 
     /// Returns the scenario of a design with the given stiffness on one of the tasks.

@@ -57,17 +57,12 @@ fn steps(mm: f64) -> OffsetStep {
 }
 
 /// Serializes grid steps as mm.
-pub(super) fn taught_mm<S: Serializer>(
-    taught: &Option<OffsetStep>,
-    to: S,
-) -> Result<S::Ok, S::Error> {
+pub fn taught_mm<S: Serializer>(taught: &Option<OffsetStep>, to: S) -> Result<S::Ok, S::Error> {
     taught.map(grid_mm).serialize(to)
 }
 
 /// Deserializes mm as grid steps.
-pub(super) fn taught_steps<'de, D: Deserializer<'de>>(
-    from: D,
-) -> Result<Option<OffsetStep>, D::Error> {
+pub fn taught_steps<'de, D: Deserializer<'de>>(from: D) -> Result<Option<OffsetStep>, D::Error> {
     Ok(Option::deserialize(from)?.map(steps))
 }
 
@@ -87,15 +82,12 @@ struct SuccessRow<'a> {
 }
 
 /// Serializes counts together with their rate and interval.
-pub(super) fn with_rate<S: Serializer>(
-    success: &Option<SuccessRate>,
-    to: S,
-) -> Result<S::Ok, S::Error> {
-    let row = success.as_ref().map(|counts| {
+pub fn with_rate<S: Serializer>(rate: &Option<SuccessRate>, to: S) -> Result<S::Ok, S::Error> {
+    let row = rate.as_ref().map(|counts| {
         let raced_draws = counts.raced();
-        let [success_low, success_high] =
-            counts.interval().map(|end| Some(end).filter(|_| raced_draws.is_none()));
-        let success_at_most = counts.max_rate().filter(|_| raced_draws.is_some());
+        let is_raced = raced_draws.is_some();
+        let [success_low, success_high] = counts.interval().map(|end| (!is_raced).then_some(end));
+        let success_at_most = counts.max_rate().filter(|_| is_raced);
         let success_rate = counts.rate();
         SuccessRow { success_rate, success_low, success_high, success_at_most, raced_draws, counts }
     });
@@ -113,10 +105,7 @@ struct RobustRow<'a> {
 }
 
 /// Serializes ranges together with their mean and standard deviation.
-pub(super) fn with_spread<S: Serializer>(
-    robust: &Option<RobustRange>,
-    to: S,
-) -> Result<S::Ok, S::Error> {
+pub fn with_spread<S: Serializer>(robust: &Option<RobustRange>, to: S) -> Result<S::Ok, S::Error> {
     let row = robust.as_ref().map(|ranges| RobustRow {
         robust_range_mm: ranges.value_mm,
         robust_mean_mm: ranges.mean_mm(),

@@ -93,14 +93,10 @@ fn find_end(
         }
         trials.push(trial);
     }
-    let share = outside.map_or(0.0, |(_, _, beyond)| share(margin, beyond));
+    // Between the two offsets, the margin falls linearly and is 0 at this share of the step.
+    let drop = outside.map_or(0.0, |(_, _, beyond)| margin - beyond);
+    let share = if drop > 0.0 { margin / drop } else { 0.0 };
     (End { step, failure: outside.map(|(_, failure, _)| failure), share }, trials)
-}
-
-/// Returns the position, 0 to 1, at which a margin that falls linearly from `inside` (>= 0) to `outside` (<= 0) is 0.
-fn share(inside: f64, outside: f64) -> f64 {
-    let drop = inside - outside;
-    if drop > 0.0 { inside / drop } else { 0.0 }
 }
 
 /// Returns the offset of a grid step, m.

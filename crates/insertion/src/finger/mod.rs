@@ -100,12 +100,10 @@ impl Finger {
     /// Returns the springs between finger and jaw at the RCC; `side` as in [`Pad::geoms`].
     pub fn jaw_springs(&self, side: f64) -> Springs {
         let springs = self.springs();
-        match &self.coupling {
-            None => Springs::Axes(springs.map(Some)),
-            Some(coupling) => Springs::Coupled {
-                stiffness: coupling.stiffness(springs.map(|spring| spring.stiffness), side),
-                damping: Matrix6::from_diagonal(&springs.map(|spring| spring.damping).into()),
-            },
+        let Some(coupling) = &self.coupling else { return Springs::Axes(springs.map(Some)) };
+        Springs::Coupled {
+            stiffness: coupling.stiffness(springs.map(|spring| spring.stiffness), side),
+            damping: Matrix6::from_diagonal(&springs.map(|spring| spring.damping).into()),
         }
     }
 }

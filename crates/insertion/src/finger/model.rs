@@ -1,10 +1,8 @@
 //! Models of the unmeasured springs of a finger: as in the paper, or computed from the ribs.
 
-use super::Finger;
-use super::computed;
+use super::{Finger, computed};
 use crate::finger::file::{infill, is_shape};
 use crate::task::finger::Coupling;
-use crate::value_name;
 use crate::{DIRECTION_KEY, Design, FingerFile, Prediction, Task};
 use finray::mechanics::{FingerStiffness, StiffnessCache};
 use input::units::MM;
@@ -21,13 +19,6 @@ pub enum FingerModelKind {
     Paper,
     /// Remote centre and tilting stiffness from the ribs; the measured stiffness acts at the pad
     Computed,
-}
-
-impl FingerModelKind {
-    /// Returns the name on the command line and in study files.
-    pub fn name(self) -> String {
-        value_name(self)
-    }
 }
 
 /// Finger model, which builds the fingers of designs.

@@ -4,7 +4,7 @@ use super::hull::Hull;
 use super::link::{Link, LinkKind};
 use super::{Estimate, Fitted, Prediction, Samples, computed, gp, leave_one_out, ridge, samples};
 use crate::Measurement;
-use crate::stiffness::{Axis, Infill, SurrogateError, check_all};
+use crate::stiffness::{Axis, Infill, SurrogateError};
 use finray::printed::PrintedFinger;
 use input::InputError;
 use input::units::N_PER_MM;
@@ -52,18 +52,18 @@ impl ModelKind {
 /// Fits a model of one axis to `measured`: stiffness, N/m, or, for the computed kinds, ratios of measured to computed
 /// stiffness. Returns `None` if the fit fails.
 fn fit_axis(axis: Axis, kind: ModelKind, measured: &Samples) -> Option<Box<dyn Fitted>> {
-    fn boxed<F: Fitted + 'static>(fitted: Option<F>) -> Option<Box<dyn Fitted>> {
-        fitted.map(|fitted| Box::new(fitted) as Box<dyn Fitted>)
-    }
     let positive = Link::new(LinkKind::Identity, measured.targets());
-    match kind {
-        ModelKind::Linear => boxed(ridge::fit(measured, 1, Link::IDENTITY, &[0.0])),
-        ModelKind::RidgeLinear => boxed(ridge::fit(measured, 1, positive, &ridge::PENALTIES)),
-        ModelKind::RidgeQuadratic => boxed(ridge::fit(measured, 2, positive, &ridge::PENALTIES)),
-        ModelKind::GaussianProcess => boxed(gp::fit(axis, measured)),
-        ModelKind::ComputedScale => boxed(computed::fit(axis, measured)),
-        ModelKind::ComputedProcess => boxed(gp::fit_ratio(measured)),
-    }
+    let fitted: Box<dyn Fitted> = match kind {
+        ModelKind::Linear => Box::new(ridge::fit(measured, 1, Link::IDENTITY, &[0.0])?),
+        ModelKind::RidgeLinear => Box::new(ridge::fit(measured, 1, positive, &ridge::PENALTIES)?),
+        ModelKind::RidgeQuadratic => {
+            Box::new(ridge::fit(measured, 2, positive, &ridge::PENALTIES)?)
+        }
+        ModelKind::GaussianProcess => Box::new(gp::fit(axis, measured)?),
+        ModelKind::ComputedScale => Box::new(computed::fit(axis, measured)?),
+        ModelKind::ComputedProcess => Box::new(gp::fit_ratio(measured)?),
+    };
+    Some(fitted)
 }
 
 /// Leave-one-out error of one model on one axis.
@@ -153,14 +153,13 @@ struct Chosen {
     widen: f64,
 }
 
-/// Fits every candidate model and chooses one per axis by its leave-one-out error. With fewer than [`MIN_MEASURED`]
-/// designs the models are based on the computed stiffness of `finger`, which is not needed otherwise.
+/// Fits every candidate model to checked measurements ([`crate::stiffness::parse`]) and chooses one per axis by its
+/// leave-one-out error. With fewer than [`MIN_MEASURED`] designs the models are based on the computed stiffness of
+/// `finger`, which is not needed otherwise.
 ///
 /// # Errors
-/// If there is no measurement, one is invalid, the designs are too similar, or a computed stiffness is needed and
-/// cannot be computed.
+/// If there is no measurement, the designs are too similar, or a computed stiffness is needed and cannot be computed.
 pub fn fit(measurements: &[Measurement], finger: &PrintedFinger) -> Result<Model, SurrogateError> {
-    check_all(measurements)?;
     let (ratios, kinds) = match measurements.len() {
         MIN_MEASURED.. => (false, &ModelKind::MEASURED[..]),
         MIN_FOR_PROCESS.. => (true, &[ModelKind::ComputedScale, ModelKind::ComputedProcess][..]),
@@ -168,9 +167,8 @@ pub fn fit(measurements: &[Measurement], finger: &PrintedFinger) -> Result<Model
     };
     let computed = computed::ComputedStiffness::new(finger);
     let choose = |axis| {
-        let unit = |m: &Measurement| match ratios {
-            true => computed.stiffness(axis, m.infill()),
-            false => Ok(1.0),
+        let unit = |m: &Measurement| {
+            if ratios { computed.stiffness(axis, m.infill()) } else { Ok(1.0) }
         };
         let units = measurements.iter().map(unit).collect::<Result<_, InputError>>()?;
         choose(&AxisData::new(axis, measurements, units), kinds)

@@ -35,10 +35,7 @@ pub(super) struct Ridge {
 fn terms(infill: Infill, degree: u8) -> Vec<f64> {
     // Centred on the printable range, so that the terms are less correlated.
     let (u, v) = (infill[0] / 20.0 - 1.0, infill[1] / 20.0 - 1.0);
-    match degree {
-        1 => vec![u, v],
-        _ => vec![u, v, u * v, u * u, v * v],
-    }
+    if degree == 1 { vec![u, v] } else { vec![u, v, u * v, u * u, v * v] }
 }
 
 /// Fits the polynomial with the penalty of the smallest leave-one-out error; `None` if no fit is possible.

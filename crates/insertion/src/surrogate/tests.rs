@@ -166,15 +166,6 @@ fn errors_name_the_line_and_what_is_accepted() {
 }
 
 #[test]
-fn measurements_without_a_file_are_checked_too() {
-    let mut bad = shipped();
-    bad[2].compliance = f64::NAN;
-    let error = fit(&bad, &finray9()).unwrap_err().to_string();
-    assert!(error.starts_with("design 3: stiffness_compliance"), "{error}");
-    assert_eq!(fit(&[], &finray9()).unwrap_err(), SurrogateError::Empty);
-}
-
-#[test]
 fn exact_or_one_dimensional_data_give_a_model_or_an_error_but_no_panic() {
     let line = |f: &dyn Fn(f64) -> (f64, f64)| -> Vec<Measurement> {
         (0..8)

@@ -102,10 +102,8 @@ pub fn cut([min, max]: [&Vector3<f64>; 2], edges: &[(Edge, Cut)]) -> Result<Soli
         return Rounded::new([min, max], edges).map(Solid::Rounded).ok_or(TOO_THIN);
     }
     let corners = corners(&half_spaces([min, max], edges, |_| 1));
-    match geometry::hull(&corners) {
-        Some((points, _)) if points.len() == corners.len() => Ok(Solid::Hull { points }),
-        _ => Err(TOO_THIN),
-    }
+    let hull = geometry::hull(&corners).filter(|(points, _)| points.len() == corners.len());
+    hull.map(|(points, _)| Solid::Hull { points }).ok_or(TOO_THIN)
 }
 
 /// Returns the half-spaces of a box with cut edges. One plane replaces a chamfered edge, and one for each chord a round

@@ -74,10 +74,8 @@ impl Part {
 
     /// Returns the exact geoms for contacts, in the frame of [`Part::geom`].
     pub fn geoms(&self) -> Vec<Geom> {
-        match &self.solid {
-            Solid::Rounded(rounded) => rounded.pieces().map(|piece| self.placed(piece)).collect(),
-            _ => vec![self.geom()],
-        }
+        let Solid::Rounded(rounded) = &self.solid else { return vec![self.geom()] };
+        rounded.pieces().map(|piece| self.placed(piece)).collect()
     }
 
     fn placed(&self, (shape, origin): (Shape, Vector3<f64>)) -> Geom {

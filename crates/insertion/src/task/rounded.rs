@@ -85,10 +85,7 @@ impl Rounded {
         let mut pieces: Vec<_> =
             self.edges.iter().filter_map(|(edge, cut)| self.core(edge, *cut)).collect();
         let flats = corners(&half_spaces([&Vector3::zeros(), &self.size], &self.edges, |_| 1));
-        let (points, _) = geometry::hull(&flats)?;
-        if points.len() != flats.len() {
-            return None;
-        }
+        let (points, _) = geometry::hull(&flats).filter(|(hull, _)| hull.len() == flats.len())?;
         pieces.push(geometry::centred(&points));
         let unequal = self.rounded_corners().filter(|end| self.ball(end).is_none());
         pieces.extend(unequal.filter_map(|end| self.corner_hull(&end)));

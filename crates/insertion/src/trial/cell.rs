@@ -3,10 +3,9 @@
 //! Frames: the world is the task frame. The flange frame is the TCP. The plug
 //! stands upright at its pick-up pose, vertically above the start of the search.
 
-use crate::finger;
 use crate::robot::{Flange, MountedRobot, Servo};
 use crate::task::{Latch, PadTorsion, geometry};
-use crate::{Finger, Part, Task};
+use crate::{Finger, Part, Task, finger};
 use contact::scene::{
     AxialFriction, Body, BodyId, Friction, Geom, Inertia, Joint, JointId, Motion, Pose, Scene,
     Shape, Spring, Springs, Torsion,

@@ -2,8 +2,7 @@
 
 use super::Rig;
 use super::run::{EngineRig, RigError};
-use crate::value_name;
-use crate::{Finger, Robot, Task};
+use crate::{Finger, Robot, Task, value_name};
 use contact::Engine;
 use contact::direct::Direct;
 #[cfg(feature = "mujoco")]
@@ -44,11 +43,6 @@ impl EngineKind {
     /// Returns the name on the command line and in study files.
     pub fn name(self) -> String {
         value_name(self)
-    }
-
-    /// Returns the engine of that name.
-    pub fn from_name(name: &str) -> Option<Self> {
-        <EngineKind as clap::ValueEnum>::from_str(name, false).ok()
     }
 
     /// Returns the engine with `factor` times its production time step, and its settings. For the closed formula it is
@@ -121,7 +115,7 @@ mod tests {
     #[test]
     fn every_engine_is_recorded_with_its_version_and_settings() {
         for kind in EngineKind::value_variants() {
-            assert_eq!(EngineKind::from_name(&kind.name()), Some(*kind));
+            assert_eq!(EngineKind::from_str(&kind.name(), false), Ok(*kind));
             let record = kind.record();
             assert!(record.version.starts_with(&kind.name()), "{record:?}");
             let simulates = kind.simulates();

@@ -165,17 +165,12 @@ struct Prepared<'a> {
     descended: OnceLock<Option<Attempt<'a>>>,
 }
 
-impl<'a> Prepared<'a> {
-    /// Returns the common start of all offsets after the shared descent, if there is one.
-    fn descended(&self) -> Option<&Attempt<'a>> {
-        self.end.ok()?;
-        self.descended.get_or_init(|| self.attempt.descended()).as_ref()
-    }
-
+impl Prepared<'_> {
     fn run(&self, offset: f64, every_s: Option<f64>, rest_s: f64) -> RecordedRun {
         let observed = every_s.is_some() || self.attempt.recorder.is_some();
-        let mut attempt =
-            if observed { None } else { self.descended() }.unwrap_or(&self.attempt).shifted(offset);
+        let descended = || self.descended.get_or_init(|| self.attempt.descended()).as_ref();
+        let shared = if observed || self.end.is_err() { None } else { descended() };
+        let mut attempt = shared.unwrap_or(&self.attempt).shifted(offset);
         // The sensor is zeroed once the robot is at rest.
         let end = self.end.and_then(|()| attempt.rest(rest_s));
         attempt.trace = every_s.map(Trace::new);
@@ -303,7 +298,7 @@ mod tests {
             let text = usb.text.replace(slow, speed);
             let rig = rig(Task::parse(&text, usb.file).unwrap());
             let prepared = rig.prepare(&Direct::default(), Grasp::of(&finger(2.6, 45.0)), false);
-            assert!(speed != slow || prepared.descended().is_some());
+            assert!(speed != slow || prepared.attempt.descended().is_some());
             // A trial with samples goes all the way by itself.
             for offset in [-2.5e-3, 0.0, 4e-3] {
                 let trial = prepared.run(offset, None, 0.0).0.0;

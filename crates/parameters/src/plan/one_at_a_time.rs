@@ -26,10 +26,8 @@ pub fn farthest<T>(
     evaluate: impl Fn(f64) -> Option<T>,
 ) -> Option<T> {
     let neutral = parameter.neutral(number);
-    let bound = match end {
-        End::Low => parameter.low.min(neutral),
-        End::High => parameter.high.max(neutral),
-    };
+    let Parameter { low, high, .. } = parameter;
+    let bound = if end == End::Low { low.min(neutral) } else { high.max(neutral) };
     let at_step =
         |steps: u32| evaluate(neutral + f64::from(steps) / f64::from(STEPS) * (bound - neutral));
     if let Some(found) = at_step(STEPS) {

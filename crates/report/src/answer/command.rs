@@ -167,7 +167,10 @@ fn setup(inputs: &InputArguments) -> Vec<String> {
     if inputs.shipped("stiffness", STIFFNESS).is_none() {
         words.push(format!("--stiffness-data {}", inputs.input("stiffness", &[])));
     }
-    words.push(format!("--finger-model {}", inputs.record.config.finger_model.name()));
+    words.push(format!(
+        "--finger-model {}",
+        insertion::value_name(inputs.record.config.finger_model)
+    ));
     if provenance.input_sha256.contains_key(FINGER) {
         words.push(format!("--finger {}", inputs.input(FINGER, FINGERS)));
     }

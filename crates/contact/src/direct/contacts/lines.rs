@@ -22,11 +22,8 @@ pub(super) fn add_ends(
     prediction: f64,
 ) {
     let Some(first) = manifold.points.first() else { return };
-    let ([Some((a, own)), Some((b, other))], normal) = (solids.map(Solid::core), manifold.local_n1)
-    else {
-        return;
-    };
-    let about = first.local_p1;
+    let [Some((a, own)), Some((b, other))] = solids.map(Solid::core) else { return };
+    let (about, normal) = (first.local_p1, manifold.local_n1);
     let (u, v) = normal.any_orthonormal_pair();
     // Doubled below, since the rotation moves the shapes apart.
     let reach = prediction * MILLIMETRES + own + other;

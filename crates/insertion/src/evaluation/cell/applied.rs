@@ -78,10 +78,8 @@ impl Robot {
     pub fn change(&mut self, parameter: &Parameter, value: f64) {
         let (numbers, unit) = self.numbers(&parameter.path);
         let Some(own) = numbers.first().map(|number| **number / unit) else { return };
-        let factor = match parameter.transform {
-            Transform::Factor => value,
-            Transform::Shift | Transform::Value => parameter.applied(own, value) / own,
-        };
+        let ratio = parameter.applied(own, value) / own;
+        let factor = if parameter.transform == Transform::Factor { value } else { ratio };
         numbers.into_iter().for_each(|number| *number *= factor);
     }
 }
@@ -96,10 +94,8 @@ impl Evaluator {
 
     /// Returns whether task, finger or robot has the number of a parameter.
     pub fn has(&self, template: &Template, parameter: &Parameter) -> bool {
-        match parameter.path.kind() {
-            Kind::File => self.number(template, &parameter.path).is_some(),
-            _ => self.robot.fits(parameter),
-        }
+        let is_in_file = || self.number(template, &parameter.path).is_some();
+        self.robot.fits(parameter) && (parameter.path.kind() != Kind::File || is_in_file())
     }
 
     /// Checks that the task of a cell, if the evaluator has it, has the paths of the cell's parameters; `file` is named
@@ -146,17 +142,13 @@ impl Evaluator {
 
     /// Returns the number of a key in the task file, if a template is given, or in the finger file.
     fn in_file(&self, template: Option<&Template>, key: &str) -> Option<f64> {
-        template.and_then(|template| template.numbers.number(key)).or_else(|| match &self.fingers {
-            FingerSource::Paper => None,
-            FingerSource::Computed(fingers) => fingers.file.numbers.number(key),
-        })
+        let in_task = template.and_then(|template| template.numbers.number(key));
+        let FingerSource::Computed(fingers) = &self.fingers else { return in_task };
+        in_task.or_else(|| fingers.file.numbers.number(key))
     }
 
     /// Returns the parameters of the cell that apply to a task, by default the first, with their nominal values.
-    pub(in crate::evaluation) fn rows<'a>(
-        &'a self,
-        template: Option<&'a Template>,
-    ) -> Vec<(&'a Parameter, f64)> {
+    pub(crate) fn rows(&self, template: Option<&Template>) -> Vec<(&Parameter, f64)> {
         let Some(cell) = &self.cell else { return Vec::new() };
         let task = template.or(self.templates.first()).map_or("", |template| &template.task.name);
         cell.of(task).map(|row| (row, row.middle())).collect()

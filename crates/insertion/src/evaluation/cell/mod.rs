@@ -79,7 +79,7 @@ impl Priors {
     }
 
     /// Returns the parameters that apply to a task.
-    pub fn of<'a>(&'a self, task: &'a str) -> impl Iterator<Item = &'a Parameter> {
+    pub fn of(&self, task: &str) -> impl Iterator<Item = &Parameter> {
         let own = self.task.as_ref().is_none_or(|own| own == task);
         self.parameters.iter().filter(move |row| row.shared || own)
     }

@@ -30,10 +30,7 @@ pub struct Constraint {
 impl Constraint {
     /// Returns the worst value of the measure over the tasks; `None` if it has no value on a task.
     pub fn worst(&self, tasks: &[&Evaluation]) -> Option<f64> {
-        let worse: fn(f64, f64) -> f64 = match self.bound {
-            Bound::AtMost => f64::max,
-            Bound::AtLeast => f64::min,
-        };
+        let worse = if self.bound == Bound::AtMost { f64::max } else { f64::min };
         let values: Option<Vec<f64>> =
             tasks.iter().map(|evaluation| self.measure.value(evaluation)).collect();
         values?.into_iter().reduce(worse)
@@ -41,23 +38,17 @@ impl Constraint {
 
     /// Describes the worst value: `31.2 N, violates peak-force<=30`.
     pub fn words(&self, tasks: &[&Evaluation]) -> String {
-        match self.worst(tasks) {
-            None => format!("no value for {self}"),
-            Some(value) => {
-                let verb = if self.violation(value) <= 0.0 { "satisfies" } else { "violates" };
-                format!("{}, {verb} {self}", self.measure.show(value))
-            }
-        }
+        let Some(value) = self.worst(tasks) else { return format!("no value for {self}") };
+        let verb = if self.violation(value) <= 0.0 { "satisfies" } else { "violates" };
+        format!("{}, {verb} {self}", self.measure.show(value))
     }
 
     /// Returns the excess of a value over the limit as a share of the limit (of 1 if the limit is 0), so that
     /// constraints in different units can be added; 0 or below if feasible.
     pub fn violation(&self, value: f64) -> f64 {
-        let excess = match self.bound {
-            Bound::AtMost => value - self.limit,
-            Bound::AtLeast => self.limit - value,
-        };
-        let share = if self.limit == 0.0 { excess } else { excess / self.limit.abs() };
+        let limit = self.limit;
+        let excess = if self.bound == Bound::AtMost { value - limit } else { limit - value };
+        let share = if limit == 0.0 { excess } else { excess / limit.abs() };
         // The share could overflow with a limit near 0.
         share.clamp(f64::MIN, f64::MAX)
     }
@@ -65,10 +56,7 @@ impl Constraint {
 
 impl fmt::Display for Constraint {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let sign = match self.bound {
-            Bound::AtMost => "<=",
-            Bound::AtLeast => ">=",
-        };
+        let sign = if self.bound == Bound::AtMost { "<=" } else { ">=" };
         f.pad(&format!("{}{sign}{}", self.measure, self.limit))
     }
 }

@@ -22,42 +22,35 @@ pub enum Measure {
     Slip,
 }
 
-impl Measure {
-    /// All measures, in the order in which messages list them.
-    pub const ALL: [Measure; 6] = [
-        Measure::Range,
-        Measure::CentredRange,
-        Measure::SuccessRate,
-        Measure::RobustRange,
-        Measure::PeakForce,
-        Measure::Slip,
-    ];
+/// Measure, name, unit, unit in keys and number of decimals, in the order of the enum and of messages.
+const MEASURES: [(Measure, &str, &str, &str, usize); 6] = [
+    (Measure::Range, "range", "mm", "mm", 1),
+    (Measure::CentredRange, "centred-range", "mm", "mm", 1),
+    (Measure::SuccessRate, "success-rate", "", "share", 3),
+    (Measure::RobustRange, "robust-range", "mm", "mm", 2),
+    (Measure::PeakForce, "peak-force", "N", "n", 1),
+    (Measure::Slip, "slip", "mm", "mm", 2),
+];
 
-    /// Returns name, unit, unit in keys, and number of decimals.
-    fn row(self) -> (&'static str, &'static str, &'static str, usize) {
-        match self {
-            Measure::Range => ("range", "mm", "mm", 1),
-            Measure::CentredRange => ("centred-range", "mm", "mm", 1),
-            Measure::SuccessRate => ("success-rate", "", "share", 3),
-            Measure::RobustRange => ("robust-range", "mm", "mm", 2),
-            Measure::PeakForce => ("peak-force", "N", "n", 1),
-            Measure::Slip => ("slip", "mm", "mm", 2),
-        }
+impl Measure {
+    /// Returns all measures.
+    pub fn all() -> [Measure; 6] {
+        MEASURES.map(|(measure, ..)| measure)
     }
 
     /// Returns the name on the command line and in study files.
     pub fn name(self) -> &'static str {
-        self.row().0
+        MEASURES[self as usize].1
     }
 
     /// Returns the unit for text and axes; empty for a share.
     pub fn unit(self) -> &'static str {
-        self.row().1
+        MEASURES[self as usize].2
     }
 
     /// Returns the unit as the suffix of a key: `mm`, `n` or `share`.
     pub fn key(self) -> &'static str {
-        self.row().2
+        MEASURES[self as usize].3
     }
 
     /// Returns 1 to maximize, -1 to minimize.
@@ -103,7 +96,7 @@ impl Measure {
 
     /// Returns a value with its unit.
     pub fn show(self, value: f64) -> String {
-        let (_, unit, _, decimals) = self.row();
+        let (_, _, unit, _, decimals) = MEASURES[self as usize];
         format!("{value:.decimals$} {unit}").trim_end().to_owned()
     }
 
@@ -125,8 +118,8 @@ impl fmt::Display for Measure {
 impl FromStr for Measure {
     type Err = String;
     fn from_str(name: &str) -> Result<Self, String> {
-        Measure::ALL.into_iter().find(|measure| measure.name() == name).ok_or_else(|| {
-            let names = Measure::ALL.map(Measure::name).join(", ");
+        Measure::all().into_iter().find(|measure| measure.name() == name).ok_or_else(|| {
+            let names = Measure::all().map(Measure::name).join(", ");
             format!("unknown measure `{name}`; available: {names}")
         })
     }
@@ -184,7 +177,7 @@ pub(super) mod tests {
 
     #[test]
     fn names_read_back() {
-        for measure in Measure::ALL {
+        for measure in Measure::all() {
             assert_eq!(measure.to_string().parse(), Ok(measure));
         }
     }

@@ -66,13 +66,11 @@ impl Objectives {
 
     /// Returns the key of each objective in tables and JSON: `objective_mm`; `objective_1_mm`, `objective_2_n`.
     pub fn keys(&self) -> Vec<String> {
-        match self.single() {
-            Some(measure) => vec![format!("objective_{}", measure.key())],
-            None => {
-                let numbered = (1..).zip(&self.0);
-                numbered.map(|(n, measure)| format!("objective_{n}_{}", measure.key())).collect()
-            }
+        if let Some(measure) = self.single() {
+            return vec![format!("objective_{}", measure.key())];
         }
+        let numbered = (1..).zip(&self.0);
+        numbered.map(|(n, measure)| format!("objective_{n}_{}", measure.key())).collect()
     }
 
     /// Formats values with names and units: `range 4.7 mm, peak-force 5.0 N`.

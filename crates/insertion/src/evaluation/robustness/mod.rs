@@ -4,11 +4,10 @@ pub mod firm;
 pub mod race;
 pub mod repeat;
 
-use crate::evaluation::tolerance;
 use crate::evaluation::uncertainty::{
     Draw, RobustSettings, Statistic, SuccessSettings, Uncertainty, draws,
 };
-use crate::evaluation::{RobustRange, SuccessRate};
+use crate::evaluation::{RobustRange, SuccessRate, tolerance};
 use crate::{Evaluation, Finger, Grasp, Outcome, Prediction, Priors, Rig, Search};
 use ask_tell::statistics::{mean, sorted};
 use race::Race;

@@ -44,10 +44,7 @@ pub enum DesignError {
 
 impl Placed for DesignError {
     fn place(&self) -> Place {
-        match self {
-            DesignError::Value(error) => error.place(),
-            DesignError::Rig(_) => Place::default(),
-        }
+        if let DesignError::Value(error) = self { error.place() } else { Place::default() }
     }
 }
 
@@ -118,10 +115,9 @@ impl Template {
         changed.or_else(|error| {
             // The file itself is valid, so a value of the design causes the error.
             let is_cause = |path: &&str| path.strip_prefix("task.") == error.place.key.as_deref();
-            match of_task.iter().map(|(path, _)| *path).find(is_cause) {
-                Some(path) => DESIGN.fail(path, error.problem),
-                None => Err(error),
-            }
+            let cause = of_task.iter().map(|(path, _)| *path).find(is_cause);
+            let Some(path) = cause else { return Err(error) };
+            DESIGN.fail(path, error.problem)
         })
     }
 }

@@ -36,9 +36,8 @@ pub fn check(space: &Space, file: &str, finger: &FingerFile) -> Result<(), Input
 pub fn check_springs(evaluator: &Evaluator, space: &Space, file: &str) -> Result<(), InputError> {
     let sets = |key: &str| [RCC_KEY, TILTING_KEY].contains(&key);
     let computed = matches!(evaluator.fingers, FingerSource::Computed(_));
-    let Some(first) = space.parameters.iter().find(|p| computed && sets(&p.key)) else {
-        return Ok(());
-    };
+    let first = space.parameters.iter().find(|p| computed && sets(&p.key));
+    let Some(first) = first else { return Ok(()) };
     let tried = |p: &&Variable| sets(&p.key) || is_infill(&p.key);
     let all = (space.parameters.iter().filter(tried), usize::MAX);
     each_corner(Check { file }, &first.key, all, "has no springs", |design| {

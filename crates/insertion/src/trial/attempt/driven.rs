@@ -85,13 +85,11 @@ impl Driven {
     }
 
     fn outcome(&self) -> Option<Outcome> {
-        match self.end {
-            Ok(()) => (self.seated_s >= REST).then_some(Outcome::Inserted),
-            Err(stop) => {
-                let seated = stop == Stop::ForceLimit && self.seated_s > 0.0;
-                Some(self.attempt.outcome(self.end, seated))
-            }
+        if self.end.is_ok() {
+            return (self.seated_s >= REST).then_some(Outcome::Inserted);
         }
+        let seated = self.end == Err(Stop::ForceLimit) && self.seated_s > 0.0;
+        Some(self.attempt.outcome(self.end, seated))
     }
 
     fn state(&self) -> State {

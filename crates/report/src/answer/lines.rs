@@ -142,7 +142,11 @@ pub fn caveats(answer: &Answer) -> Vec<Line> {
 /// Returns the warnings that precede the recommendation: a contact force above a limit, and protective stops of the robot
 /// that end most trials.
 pub fn first(answer: &Answer) -> Vec<Line> {
-    let tasks = answer.finger_and_evaluations().map_or(Vec::new(), |(_, tasks)| tasks);
+    // Those of the line of the ends, if there is one.
+    let tasks: Vec<&Evaluation> = match simulated_finger(answer) {
+        Some(found) => found.tasks.iter().map(|task| task.measured).collect(),
+        None => answer.finger_and_evaluations().map_or(Vec::new(), |(_, tasks)| tasks),
+    };
     force(answer).into_iter().chain(tasks.into_iter().filter_map(most_stops)).collect()
 }
 
@@ -360,9 +364,10 @@ pub fn most_stops(evaluation: &Evaluation) -> Option<Line> {
 }
 
 /// Returns `; ` and the number of trials that a protective stop of the robot ended, for the line of the ends; empty if
-/// there are none.
+/// there are none, or if [`most_stops`] has it.
 fn some_stops(evaluation: &Evaluation) -> String {
-    if evaluation.robot_stops > 0 { format!("; {}", stops(evaluation)) } else { String::new() }
+    let some = (1..=evaluation.trials / 2).contains(&evaluation.robot_stops);
+    if some { format!("; {}", stops(evaluation)) } else { String::new() }
 }
 
 fn stops(Evaluation { robot_stops, trials, .. }: &Evaluation) -> String {

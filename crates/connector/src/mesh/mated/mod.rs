@@ -218,13 +218,10 @@ fn checked_skin(
     reached: impl Fn(&Triangle, &Vector3<f64>) -> bool,
 ) -> (Vec<Part>, Vec<Deviation>) {
     let drawn = Drawn::new(triangles);
-    let solids = skin(triangles, &reached, |solid| drawn.trimmed(solid));
+    let (solids, kept) = skin(triangles, reached, |solid| drawn.trimmed(solid));
     let called = |i: usize, solid: &Solid| format!("{name} {i} {}", side(solid));
     let parts = (1..).zip(solids).map(|(i, solid)| draft::part(&called(i, &solid), solid));
     let parts: Vec<Part> = parts.collect();
-    let normal = |[a, b, c]: &Triangle| (b - a).cross(&(c - a)).try_normalize(0.0);
-    let kept = triangles.iter().filter(|t| normal(t).is_some_and(|normal| reached(t, &normal)));
-    let kept: Vec<Triangle> = kept.copied().collect();
     let found = drawn.deviations(&kept, &parts);
     (parts, found)
 }

@@ -47,13 +47,13 @@ const MANY: usize = 32;
 /// Plane of a face that meets a polygon at less than a right angle: index of the flat face, a point, and the normal.
 type SharpFace = (usize, Point3<f64>, Vector3<f64>);
 
-/// Returns convex solids whose outer surface is that of the triangles, m, for which `reached` is true; a slab that
-/// `fitted` rejects is made thinner.
+/// Returns convex solids whose outer surface is that of the triangles, m, for which `reached` is true, and these
+/// triangles, welded; a slab that `fitted` rejects is made thinner.
 pub fn skin(
     triangles: &[Triangle],
     reached: impl Fn(&Triangle, &Vector3<f64>) -> bool,
     fitted: impl Fn(Solid) -> Option<Solid>,
-) -> Vec<Solid> {
+) -> (Vec<Solid>, Vec<Triangle>) {
     let facets = Facets::new(triangles);
     let reached = |face: usize| reached(&facets.corners(face), &facets.normals[face]);
     let reached: Vec<bool> = (0..facets.faces.len()).map(reached).collect();
@@ -78,7 +78,10 @@ pub fn skin(
             solids.extend(faces.slabs(flat, &polygon, &normal, &fitted));
         }
     }
-    solids
+    let kept = (0..reached.len())
+        .filter(|&face| reached[face] && facets.normals[face] != Vector3::zeros())
+        .map(|face| facets.corners(face));
+    (solids, kept.collect())
 }
 
 /// Returns a closed shell as one solid if it is convex.
@@ -305,7 +308,7 @@ mod tests {
 
     fn parts(triangles: &[Triangle]) -> Vec<Part> {
         let part = |solid| Part { name: String::new(), solid, friction: None };
-        skin(triangles, |_, _| true, Some).into_iter().map(part).collect()
+        skin(triangles, |_, _| true, Some).0.into_iter().map(part).collect()
     }
 
     #[test]
@@ -351,7 +354,7 @@ mod tests {
         let drawn = extruded(&outline, &[[0, 1, 2, 3], [0, 3, 4, 4]]);
         let short = |solid: Solid| (longest_side(&solid.corners()) < 1.5 * MM).then_some(solid);
         let part = |solid| Part { name: String::new(), solid, friction: None };
-        let pieces: Vec<Part> = skin(&drawn, |_, _| true, short).into_iter().map(part).collect();
+        let pieces: Vec<Part> = skin(&drawn, |_, _| true, short).0.into_iter().map(part).collect();
         assert!(pieces.len() > 50, "{}", pieces.len());
         assert_eq!(Drawn::new(&drawn).deviations(&drawn, &pieces), []);
     }

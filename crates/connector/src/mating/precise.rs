@@ -18,8 +18,9 @@ const MAX_CELLS: f64 = 1.5e6;
 const LIFT: f64 = 0.1 * MM;
 /// Width of the margin around interfering cells that is left out with them, m.
 const MARGIN: f64 = 0.1 * MM;
-/// Least and largest number of times that the plug is centred, in x and then in y: a pose at a wall, with a spring across
-/// it, has play in x only after it was centred in y and what it then overlaps of the spring was left out.
+/// Number of times that the plug is centred in x and in y, and largest one along an axis without play: a pose at a wall,
+/// with a spring across it, has play in x only after it was centred in y and what it then overlaps of the spring was left
+/// out.
 const ROUNDS: [usize; 2] = [2, 5];
 
 /// Measurement of play and resting height; cells in which the parts interfere are left out.
@@ -169,10 +170,11 @@ pub fn mate(parts: &Parts, scene: &Scene, pose: &Pose, max_play: f64) -> Mate {
     measurement.leave_out(fine.overlap(pose));
     let height = pose.z + LIFT;
     let mut play_m = [0.0; 2];
-    for round in 1..=ROUNDS[1] {
-        play_m = [0, 1].map(|axis| measurement.centre(axis, height, 2.0 * max_play));
-        if round >= ROUNDS[0] && play_m.iter().all(|play| *play > 0.0) {
-            break;
+    for round in 0..ROUNDS[1] {
+        for (axis, play) in play_m.iter_mut().enumerate() {
+            if round < ROUNDS[0] || *play == 0.0 {
+                *play = measurement.centre(axis, height, 2.0 * max_play);
+            }
         }
     }
     let rest = measurement.rest();

@@ -254,7 +254,10 @@ impl AskTellStudy {
         let analyses = interruptible(py, analyse)?.map_err(exception)?;
         let text = match self.format.json {
             true => summary(&ended, &answer, &analyses).to_string() + "\n",
-            false => text::ended(&ended, &answer, self.format.verbose) + &text::analyses(&analyses),
+            false => {
+                let answered = text::ended(&ended, &answer, self.format.verbose);
+                answered + &text::analyses(&analyses) + &text::next(&answer, &ended.dir)
+            }
         };
         Ok((text, unusable))
     }

@@ -45,7 +45,7 @@ pub struct RotationalPlay {
     pub arc: f64,
 }
 
-/// Returns the play in rotation, at the depth of [`clearance`]; `None` if it is at least [`MAX_TURN`].
+/// Returns the play in rotation, at the depth of [`clearance`]; `None` if it is at least 45 degrees.
 pub fn rotational_play(task: &Task) -> Option<RotationalPlay> {
     let bodies = TaskBodies::new(task);
     let seat = bodies.deepest();

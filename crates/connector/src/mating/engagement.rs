@@ -70,6 +70,32 @@ impl PlugWalls {
         [walls, volume / OVERLAP_PER_AREA]
     }
 
+    /// Returns the distances along the four sides from the plug's walls to those of the socket, cells: the medians by area
+    /// up to `most`, so that springs and ribs on less than half of a wall do not count. Negative where they overlap; shift
+    /// and height as for [`Self::facing`].
+    pub fn gaps(&self, socket: &HeightMap, shift: [i32; 2], z: f32, most: i32) -> [Option<i32>; 4] {
+        let mut found: [Vec<(i32, f32)>; 4] = Default::default();
+        for strip in &self.strips {
+            let [dx, dy] = SIDES[strip.side];
+            let [x, y] = [strip.cell[0] + shift[0], strip.cell[1] + shift[1]];
+            let (low, high) = (strip.low + z, strip.high + z);
+            let faced =
+                |gap: i32| socket.at(x + (gap + 1) * dx, y + (gap + 1) * dy).min(high) - low;
+            let gap = (-most..=most).find(|gap| faced(*gap) > 0.0);
+            found[strip.side].extend(gap.map(|gap| (gap, faced(gap))));
+        }
+        found.map(|mut gaps| {
+            gaps.sort_by_key(|(gap, _)| *gap);
+            let half = gaps.iter().map(|(_, height)| height).sum::<f32>() / 2.0;
+            let mut sum = 0.0;
+            let below = |(_, height): &&(i32, f32)| {
+                sum += height;
+                sum >= half
+            };
+            gaps.iter().find(below).map(|(gap, _)| *gap)
+        })
+    }
+
     /// Returns the areas of the walls that face a wall of the socket if the plug is shifted by `shift` cells and raised
     /// to `z`, m.
     pub fn facing(&self, socket: &SocketWalls, shift: [i32; 2], z: f32) -> WallAreas {

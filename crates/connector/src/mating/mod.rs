@@ -18,7 +18,6 @@ mod symmetry;
 #[cfg(test)]
 mod tests;
 
-use crate::body::{span, width};
 use crate::mesh::Triangle;
 pub use assembled::assembled;
 use frame::{Part, Parts};
@@ -30,9 +29,6 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// Limits of the total play of a plug in its seat, m: for connectors, for toys and enlarged models, and for the paper's
 /// usb.
 const MAX_PLAYS: [f64; 3] = [0.5 * MM, 2.0 * MM, 4.0 * MM];
-
-/// Engagement below which the plug is only caught on an edge, as a share of its length.
-const CAUGHT: f64 = 0.05;
 
 /// Mated pose of a plug in its socket, with its axis of insertion.
 #[derive(Debug, Clone, PartialEq)]
@@ -53,6 +49,8 @@ pub struct Mate {
     pub through: bool,
     /// Further depth at which more of the walls would engage, m, if something beside the seat stops the plug; else 0.
     pub missed_m: f64,
+    /// Whether the plug is only caught on an edge, engaged over less than a twentieth of its length.
+    pub caught: bool,
 }
 
 /// Result of the search for a mate.
@@ -64,17 +62,25 @@ pub struct MatingResult {
     pub copies: usize,
 }
 
+impl MatingResult {
+    fn has(&self, test: impl Fn(&Mate) -> bool) -> bool {
+        self.mates.iter().any(test)
+    }
+}
+
 impl Mate {
+    fn is_seated(&self) -> bool {
+        !self.caught && self.missed_m == 0.0
+    }
+
+    /// Returns whether the plug is in its seat, with play.
+    fn is_free(&self) -> bool {
+        self.is_seated() && self.play_m.iter().all(|play| *play > 0.0)
+    }
+
     /// Returns the depth of the plug's tip below the edge of the socket, m.
     pub fn depth_m(&self) -> f64 {
         self.engaged_m + self.nose_m
-    }
-
-    /// Returns whether the plug is inserted rather than caught on an edge; its triangles are in its own frame.
-    fn is_inserted(&self, plug: &[Triangle]) -> bool {
-        let out = self.pose.inverse_transform_vector(&self.out);
-        let length = width(span(plug.iter().flatten().map(|p| p.coords.dot(&out))));
-        self.engaged_m >= CAUGHT * length
     }
 }
 
@@ -129,19 +135,42 @@ pub fn mates(
     let mut shallow = None;
     for effort in search::EFFORTS {
         let scene = search::Scene::new(&parts, effort);
-        let pairs = symmetry::pairs(&scene);
-        let seats = search::seats(&scene, &pairs, stop)?;
-        // The tightest fit is preferred: a looser one is used only if there is none, or if the plug is only caught on
-        // an edge.
-        for (max_play, seats) in MAX_PLAYS.into_iter().zip(seats) {
-            let poses = refine::refined(&scene, &seats, max_play, stop)?;
-            match select::select(&parts, &scene, &poses, &pairs, max_play) {
-                Some(found) if found.mates.iter().any(|mate| mate.is_inserted(plug)) => {
-                    return Ok(found);
-                }
-                found => shallow = shallow.or(found),
+        let found = found_with(&parts, &scene, &search::INTERFERENCES, stop)?;
+        let inserted = found.as_ref().is_some_and(|found| found.has(|mate| !mate.caught));
+        let missed = found.as_ref().is_none_or(|found| !found.has(Mate::is_seated));
+        // A stiff spring may hide the seat, or stop the plug beside it.
+        if missed && (inserted || effort == search::EFFORTS[1]) {
+            let sprung = found_with(&parts, &scene, &[search::SPRING], stop)?;
+            if let Some(sprung) = sprung.filter(|sprung| sprung.has(Mate::is_free)) {
+                return Ok(sprung);
             }
+        }
+        shallow = if inserted { found } else { shallow.or(found) };
+        if inserted {
+            break;
         }
     }
     shallow.ok_or(MatingError::NoFit)
+}
+
+/// Finds the mates with the interferences, m. The tightest fit is preferred: a looser one is used only if there is none,
+/// or if the plug is only caught on an edge.
+fn found_with(
+    parts: &Parts,
+    scene: &search::Scene,
+    interferences: &[f64],
+    stop: &AtomicBool,
+) -> Result<Option<MatingResult>, MatingError> {
+    let pairs = symmetry::pairs(scene);
+    let seats = search::seats(scene, &pairs, interferences, stop)?;
+    let mut shallow = None;
+    for (max_play, seats) in MAX_PLAYS.into_iter().zip(seats) {
+        let poses = refine::refined(scene, &seats, max_play, stop)?;
+        let found = select::select(parts, scene, &poses, &pairs, max_play);
+        if found.as_ref().is_some_and(|found| found.has(|mate| !mate.caught)) {
+            return Ok(found);
+        }
+        shallow = shallow.or(found);
+    }
+    Ok(shallow)
 }

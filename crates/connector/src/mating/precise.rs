@@ -3,9 +3,10 @@
 use super::Mate;
 use super::cells::CellSet;
 use super::frame::{Parts, rotations_to_z, turns};
-use super::map::{Envelope, HeightMap, Window, rest, touching};
+use super::map::{Envelope, HeightMap, Window, bounds, rest, touching};
 use super::refine::{Fine, Pose};
 use super::search::Scene;
+use crate::body::width;
 use crate::mesh::Triangle;
 use input::units::MM;
 use nalgebra::{Isometry3, Translation3, Unit, UnitQuaternion, Vector3};
@@ -18,6 +19,8 @@ const MAX_CELLS: f64 = 1.5e6;
 const LIFT: f64 = 0.1 * MM;
 /// Width of the margin around interfering cells that is left out with them, m.
 const MARGIN: f64 = 0.1 * MM;
+/// Engagement below which the plug is only caught on an edge, as a share of its length.
+const CAUGHT: f64 = 0.05;
 /// Number of times that the plug is centred in x and in y, and largest one along an axis without play: a pose at a wall,
 /// with a spring across it, has play in x only after it was centred in y and what it then overlaps of the spring was left
 /// out.
@@ -30,14 +33,14 @@ struct PlayMeasurement<'a> {
     window: Window,
     /// Cells of the plug in which the parts interfere.
     interfering: Vec<[i32; 2]>,
-    /// Width of their region, m.
-    interference: f64,
     /// These cells with one and with two margins around them.
     around: [CellSet; 2],
     /// Side of these cells, m.
     step: f64,
     /// Shift of the plug in x and y, m.
     shift: [f64; 2],
+    /// Play between the walls along each axis, m; springs are left out up to it.
+    walls: [f64; 2],
 }
 
 impl PlayMeasurement<'_> {
@@ -124,17 +127,16 @@ impl PlayMeasurement<'_> {
     /// `max_play` to either side. A spring on one side, which the plug overlaps in its pose, is left out as far as the
     /// plug can move towards it: at most by the overlap, beyond which it could be a wall.
     fn centre(&mut self, axis: usize, height: f64, max_play: f64) -> f64 {
-        let (mut found, mut least) = (None, i32::MAX);
+        let mut found = None;
         loop {
             let [upper, lower] = &self.maps(axis);
             let maps = [upper, lower];
             let Some([low, high]) = self.free(maps, axis, height, max_play) else { break };
             found = Some([low, high]);
-            least = least.min(high - low);
             let beyond = [low - 1, high + 1].map(|offset| along(axis, offset));
             let springs = beyond.map(|shift| self.spring(maps, shift, height));
             let one = springs[0].is_empty() != springs[1].is_empty();
-            if !one || f64::from(high - low - least) * CELL >= self.interference {
+            if !one || f64::from(high - low) * CELL >= self.walls[axis] {
                 break;
             }
             self.leave_out(springs.concat());
@@ -162,11 +164,12 @@ fn along(axis: usize, offset: i32) -> [i32; 2] {
 pub fn mate(parts: &Parts, scene: &Scene, pose: &Pose, max_play: f64) -> Mate {
     let fine = Fine::new(scene, pose, max_play);
     let (socket, plug) = (&scene.sockets[pose.out], &scene.plugs[pose.turn]);
+    let (stopped, pose) = (pose.z, &fine.between_springs(pose));
     let (window, step, shift) = (fine.window, fine.step, pose.shift);
+    let walls = fine.between_walls(pose).map(|of| of.map_or(0.0, |[_, play]| play));
     let (interfering, around) = (Vec::new(), Default::default());
-    let interference = fine.interference(pose);
     let mut measurement =
-        PlayMeasurement { socket, plug, window, interfering, interference, around, step, shift };
+        PlayMeasurement { socket, plug, window, interfering, around, step, shift, walls };
     measurement.leave_out(fine.overlap(pose));
     let height = pose.z + LIFT;
     let mut play_m = [0.0; 2];
@@ -178,7 +181,9 @@ pub fn mate(parts: &Parts, scene: &Scene, pose: &Pose, max_play: f64) -> Mate {
         }
     }
     let rest = measurement.rest();
-    let z = if pose.through || (rest - pose.z).abs() > LIFT { pose.z } else { rest };
+    let near = pose.z < stopped || (rest - pose.z).abs() <= LIFT;
+    let z = if pose.through || !near { pose.z } else { rest };
+    let engaged_m = pose.depth + pose.z - z;
     let back = (rotations_to_z()[pose.out] * parts.socket.own).inverse();
     let own = turns()[pose.turn] * parts.plug.own;
     let moved = Translation3::new(measurement.shift[0], measurement.shift[1], z)
@@ -188,10 +193,11 @@ pub fn mate(parts: &Parts, scene: &Scene, pose: &Pose, max_play: f64) -> Mate {
         pose: Isometry3::from_parts(Translation3::identity(), turned) * moved,
         out: Unit::new_normalize(back * Vector3::z()),
         across: [Vector3::x(), Vector3::y()].map(|axis| Unit::new_normalize(back * axis)),
-        engaged_m: pose.depth + pose.z - z,
+        engaged_m,
         nose_m: pose.nose,
         play_m,
         through: pose.through,
         missed_m: if pose.through { 0.0 } else { fine.missed(pose) },
+        caught: engaged_m < CAUGHT * width(bounds(plug)[2]),
     }
 }

@@ -35,6 +35,8 @@ const DROP: f64 = 0.1 * MM;
 /// Further depth up to which a plug is in its seat, m: the height of a chamfer at the edge of the socket, or of a gap below
 /// the body of a plug whose tip is on the floor.
 const SEATED: f64 = 1.0 * MM;
+/// Largest interference of a contact spring, m.
+const SPRING: f64 = 0.6 * MM;
 /// Share of the largest area of walls that face one another from which all of them count as facing.
 const FULL_AREA: f64 = 0.995;
 
@@ -304,6 +306,45 @@ impl Fine {
             about = shift;
         }
         found
+    }
+
+    /// Returns a pose that interferes in the middle between the walls that face the plug. If only springs stop the plug
+    /// before most walls face one another, it is there, deeper than before.
+    pub fn between_springs(&self, pose: &Pose) -> Pose {
+        let middle = |pose: &Pose| {
+            let between = self.between_walls(pose);
+            let off = between.map(|of| of.map_or(0.0, |[off, _]| off));
+            (
+                between,
+                Pose { shift: [0, 1].map(|axis| pose.shift[axis] + off[axis]), ..pose.clone() },
+            )
+        };
+        let free = |of: &Option<[f64; 2]>| of.is_some_and(|[_, play]| play >= -2.0 * TOLERANCE);
+        // The plug can rest a little higher, on its body.
+        let lowered = |raised: i32| {
+            let by = self.missed(pose) - f64::from(raised) * DROP;
+            let (between, lower) = middle(&Pose { z: pose.z - by, ..pose.clone() });
+            let springs =
+                by > SEATED && between.iter().all(free) && self.interference(&lower) <= SPRING;
+            springs.then(|| self.with_depth(lower))
+        };
+        if let Some(lower) = (0..4).find_map(lowered).filter(|_| !pose.through) {
+            return lower;
+        }
+        if self.overlap(pose).is_empty() { pose.clone() } else { middle(pose).1 }
+    }
+
+    /// Returns the distance of a pose from the middle between the walls that face the plug, along x and y, and the play
+    /// between them, m: without springs and ribs on less than half of a wall. `None` without walls on both sides.
+    pub fn between_walls(&self, pose: &Pose) -> [Option<[f64; 2]>; 2] {
+        let most = (2.0 * self.max_play / self.step).ceil() as i32;
+        let (at, z) = (self.cells(pose), pose.z as f32 + LEVEL);
+        let gaps = self.sides.gaps(&self.upper, at, z, most);
+        let gaps = gaps.map(|gap| gap.map(|gap| f64::from(gap) * self.step));
+        [0, 2].map(|side| {
+            let (plus, minus) = gaps[side].zip(gaps[side + 1])?;
+            Some([(plus - minus) / 2.0, plus + minus])
+        })
     }
 
     /// Returns the cells that both parts fill at a pose.

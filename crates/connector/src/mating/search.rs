@@ -12,8 +12,10 @@ use std::sync::atomic::AtomicBool;
 
 /// Smallest depth of a seat, m.
 pub const MIN_DEPTH: f64 = 0.4 * MM;
-/// Interference that the second pass tolerates, m: contact springs are drawn unloaded.
-const INTERFERENCE: f64 = 0.2 * MM;
+/// Interferences of the passes, m: contact springs are drawn unloaded.
+pub const INTERFERENCES: [f64; 2] = [0.0, 0.2 * MM];
+/// Interference of the pass for stiff springs, m, which loses thin walls.
+pub const SPRING: f64 = 0.5 * MM;
 /// Smallest cell of the coarse maps, m.
 const MIN_CELL: f64 = 0.1 * MM;
 /// Budgets of the search in comparisons of two cells: a fast one, and one that resolves thin walls.
@@ -89,14 +91,15 @@ fn coarse(fine: &HeightMap, erosion: usize) -> Coarse {
 }
 
 /// Finds the seats for pairs of a direction out of the socket and a rotation of the plug, each with the number of
-/// equivalent ones, at each limit of play.
+/// equivalent ones, with each of the interferences, m, at each limit of play.
 pub fn seats(
     scene: &Scene,
     pairs: &[([usize; 2], usize)],
+    interferences: &[f64],
     stop: &AtomicBool,
 ) -> Result<[Vec<CoarseSeat>; MAX_PLAYS.len()], MatingError> {
     let mut seats = [const { Vec::new() }; MAX_PLAYS.len()];
-    for interference in [0.0, INTERFERENCE] {
+    for interference in interferences {
         let erosion = (interference / 2.0 / scene.step).round() as usize;
         let [sockets, plugs] = [&scene.upper, &scene.lower].map(|maps| -> Vec<Coarse> {
             maps.par_iter().map(|map| coarse(map, erosion)).collect()

@@ -79,7 +79,13 @@ fn leave_out(
         parts.iter().map(|part| geometry::volume(&part.solid)).collect()
     });
     let mut out = bodies.each_ref().map(|parts| vec![0.0_f64; parts.len()]);
-    for Overlap { depth, parts: [i, j], .. } in overlaps(bodies, depth, least, [0.0; 2]) {
+    let mut found: Vec<_> = overlaps(bodies, depth, least, [0.0; 2]);
+    found.sort_by(|a, b| b.depth.total_cmp(&a.depth));
+    for Overlap { depth, parts: [i, j], .. } in found {
+        // A spring that is left out does not take the parts along with it that pass it on the way.
+        if out[0][i] > 0.0 || out[1][j] > 0.0 {
+            continue;
+        }
         let body = usize::from(volumes[0][i] > volumes[1][j]);
         let part = [i, j][body];
         out[body][part] = out[body][part].max(depth);

@@ -43,7 +43,7 @@ pub struct MatedTask {
     pub along: InsertionAxis,
     /// Axis of the socket's file along which the jaws close.
     pub jaws: JawAxis,
-    /// Play in rotation; `None` if the plug turns freely.
+    /// Play in rotation, both directions together; `None` if the plug turns freely.
     pub turn: Option<RotationalPlay>,
     /// Whether the normals of plug and of socket pointed inward.
     pub inward: [bool; 2],

@@ -350,10 +350,10 @@ source = "paper"
         let plain = GOOD.replace("source = \"paper\"\n", "");
         let space = Space::parse(&plain, "s.toml").unwrap();
         assert_eq!(toml::from_str::<Space>(&toml::to_string(&space).unwrap()).unwrap(), space);
-        let text = "name = \"s\"\n[[parameter]]\nkey = \"infill_density_percent\"\nlow = 10.0\n\
+        let text = "name = \"s\"\n[[parameter]]\nlow = 10.0\n\
                     [[parameter]]\nkey = \"task.friction.plug_sokcet\"\nhigh = 1.0";
         let error = Space::parse(text, "s.toml").unwrap_err().to_string();
-        for key in ["parameter.high", "parameter.step"] {
+        for key in ["parameter.key", "parameter.high", "parameter.step"] {
             assert_eq!(error.matches(&format!("missing field `{key}`")).count(), 1, "{error}");
         }
         assert_eq!(

@@ -131,7 +131,7 @@ impl Project {
         // A study with another objective, constraints or several tasks does not use measurements.
         let other = ["objective", "constraint", "aggregate"].into_iter().any(&given);
         let bench = takes("measurements").then_some("measurements").filter(|_| !other);
-        let of_bench = file.or(bench).filter(|option| !given(option));
+        let of_bench = file.or(bench).filter(|option| !given(option) && !given("measurements"));
         let measurements = measurements.filter(|_| of_bench.is_some());
         // Only `next` and `measure add` accept a missing file of measurements.
         let there = ["next", "add"].contains(&name) || measurements.iter().all(|file| exists(file));

@@ -21,6 +21,8 @@ fn measurements_are_added_checked_and_refused() {
     add("0 --range-mm 5.8").fails(2, &["error: --task: same finger as in line 2"]);
     add("0.35 --range-mm 5.8")
         .fails(2, &["error: --direction: 0.35 degrees", "0.35 rad is 20.1 degrees"]);
+    add("0 --range-mm 5 --failure-negative jamed")
+        .fails(2, &["did you mean `jammed`", "1 (contact"]);
     let two = ["error: --set task.strategy.tilt_deg: `y` is not a number\n--range-mm: `x` is not"];
     add("5 --set task.strategy.tilt_deg=y --range-mm x").fails(2, &two);
     assert_eq!(folder.read("bench.csv"), before);
@@ -272,7 +274,10 @@ fn a_finger_of_a_task_of_ones_own_is_measured_without_naming_it_twice() {
     let add = "measure add own/bench.csv --density 20 --direction";
     line(&format!("{add} 0 --range-mm 5.7 --task own/mine.toml")).succeeds();
     assert!(folder.read("own/bench.csv").starts_with("# task mine: mine.toml\ntask,"));
-    line(&format!("{add} 10 --range-mm 6.1 --task own/mine.toml")).succeeds();
+    let add = "measure add --measurements own/bench.csv --density 20 --direction";
+    let second = "10 --range-mm 6.1 --failure-positive jammed --task";
+    line(&format!("{add} {second} mine")).succeeds();
+    line(&format!("{add} 11 --range-mm 6 --task mein")).fails(2, &["unknown task `mein`"]);
     assert_eq!(folder.read("own/bench.csv").matches('#').count(), 1);
     line("measure check own/bench.csv").succeeds();
     let next = line(&format!("next {few} own/bench.csv"));

@@ -48,12 +48,13 @@ fn everything_prints_as_text_too() {
     for command in [evaluate, TRIAL] {
         fake(&format!("{command} --robot rigid")).says_in_any_lines(rigid);
     }
-    optimize_line("stiffness").says(&["N/mm"]);
+    let stiffness = optimize_line("stiffness");
+    stiffness.says(&["N/mm"]);
     let tasks = optimize_line("tasks");
     tasks.says(&["ket8", "ket12", "rj45", "usb", "infill", "\n  typical"]);
     assert!(!tasks.stdout.contains("ur5e"), "one place lists robots");
     let finger = optimize_line("finger --density 20 --direction 20");
-    for text in [&trial.stdout, &tasks.stdout, &finger.stdout] {
+    for text in [&trial.stdout, &tasks.stdout, &finger.stdout, &stiffness.stdout] {
         assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
     }
     assert!(optimize_line("stiffness --json").json()["models"].is_array());

@@ -313,6 +313,7 @@ fn unit_and_axis_of_the_jaws_are_as_requested() {
     let mut socket = frame([24.0, 24.0], [6.2, 4.2], [-8.0, 0.0]);
     socket.push(block([-12.0, 12.0], [-12.0, 12.0], [-10.0, -8.0]));
     let in_cm = |of: &[Block]| of.iter().map(|of| of.map(|p| p.map(|mm| mm / 10.0))).collect();
+    let in_mm = folder.file("socket-mm.stl", stl(&socket, [0, 1, 2]));
     let [plug, socket] = [("plug.stl", &plug[..]), ("socket.stl", &socket)].map(|(name, of)| {
         let scaled: Vec<Block> = in_cm(of);
         folder.file(name, stl(&scaled, [0, 1, 2]))
@@ -331,6 +332,10 @@ fn unit_and_axis_of_the_jaws_are_as_requested() {
     assert!(guessed.starts_with("unit          in, guessed from the size (--unit)"), "{guessed}");
     assert!(folder.read("guessed.toml").contains("unit `in`, inserted along -z"));
     import("inch.toml", &["--unit", "inch"]).fails(2, &["possible values: mm, cm, in, m", "'in'"]);
+    // 28 mm in cm fit no socket of 24 mm; as 28 and 240 mm, both are connectors.
+    let mixed = ["task", "import", "--plug", &plug, "--socket", &in_mm];
+    let sizes = "read in cm, the plug is 9.0 x 14.0 x 28.0 mm, the socket 240.0 x 240.0 x 100.0 mm";
+    optimize(&mixed).fails(2, &[sizes, "export both in one unit"]);
 }
 
 /// The boot is in the way across the first axis.

@@ -87,7 +87,8 @@ fn an_interrupt_leaves_what_was_tried_until_then() {
     let (robot, stop) = (robot("servo").unwrap(), AtomicBool::new(false));
     let tuner = Tuner::new(&task, &robot, EngineKind::Direct, &stop);
     let quiet = |_: &str, _, _, _| ();
-    let effort = |last, progress| Effort { last, until_enough: false, seed: 0, progress };
+    let effort =
+        |last, progress| Effort { last, until_enough: false, budget: 150, seed: 0, progress };
     let whole = tune(&tuner, &effort(Stage::Families, &quiet)).unwrap();
     // In the middle of the search, whose first candidates have been told by then.
     let stop_in_search = |_: &str, _, windows, _| {
@@ -99,4 +100,18 @@ fn an_interrupt_leaves_what_was_tried_until_then() {
     assert_eq!(cut.robustness, []);
     let costs: usize = cut.steps.iter().map(|step| step.tried.cost).sum();
     assert_eq!(cut.windows, costs);
+}
+
+#[test]
+fn a_budget_limits_the_search_but_not_the_stages_before_it() {
+    let tuned = |budget: &str| {
+        let given = ["tune", "usb", "--engine", "fake", "--dry-run", "--budget", budget];
+        let found = json(&given, 0);
+        let steps = found["steps"].as_array().unwrap().iter();
+        let of = |stage: &str| steps.clone().filter(|step| step["stage"] == stage).count();
+        (found["windows"].as_u64().unwrap(), of("families"), of("search"))
+    };
+    let ((_, before, none), (windows, families, searched)) = (tuned("1"), tuned("100"));
+    assert_eq!((none, before), (0, families));
+    assert!(before > 0 && searched > 0 && windows <= 100, "{searched} in {windows}");
 }

@@ -75,8 +75,8 @@ class Measurements:
         positive_mm: float | None = None,
         range_mm: float | None = None,
         not_measurable: bool = False,
-        failure_negative: int | None = None,
-        failure_positive: int | None = None,
+        failure_negative: int | str | None = None,
+        failure_positive: int | str | None = None,
         repeats: int | None = None,
         peak_force_n: float | None = None,
         date: str | None = None,
@@ -93,8 +93,8 @@ class Measurements:
             positive_mm: Most positive start that inserted, mm.
             range_mm: Width of the window, mm.
             not_measurable: Whether the finger was tried, but has no measurable range.
-            failure_negative: Failure class below the window, 1 to 4.
-            failure_positive: Failure class above the window, 1 to 4.
+            failure_negative: Failure class below the window: 1 to 4, or its name.
+            failure_positive: Failure class above the window: 1 to 4, or its name.
             repeats: Number of measurements that were averaged.
             peak_force_n: Largest contact force, N.
             date: Date of the measurement, YYYY-MM-DD.

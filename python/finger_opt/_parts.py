@@ -69,8 +69,8 @@ class Imported(Result):
     clearance_mm: float
     clearance_x_mm: float
     clearance_y_mm: float
-    #: Play in rotation about the axis of insertion, and its arc at the inserted corner farthest from it, such as that
-    #: of a key; None if the plug turns freely.
+    #: Play in rotation about the axis of insertion, both directions together, and its arc at the inserted corner
+    #: farthest from it, such as that of a key; None if the plug turns freely.
     clearance_about_z_deg: float | None
     clearance_about_z_mm: float | None
     #: Size of the body that the fingers hold, mm: width between the jaws, height, length.

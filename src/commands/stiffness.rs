@@ -1,5 +1,6 @@
 //! `optimize stiffness`: shows the stiffness model and its leave-one-out errors, or predicts for an infill.
 
+use crate::layout::wrapped;
 use crate::setup::files::{DEFAULT_FINGER, stiffness_data, surrogate};
 use crate::setup::finger::InfillRequest;
 use crate::setup::printed::finger_file;
@@ -45,7 +46,7 @@ impl command::Request for Request {
         let model = surrogate(&stiffness_data(self.stiffness_data.as_deref(), &finger)?, &finger)?;
         let predicted = infill.map(|infill| model.predict(infill)).transpose()?;
         let value = predicted.map_or_else(|| shown::json(&model), |predicted| json!(predicted));
-        let output = Output::new(shown::table(&model), value);
+        let output = Output::new(wrapped(&shown::table(&model)), value);
         // On a terminal the plot is drawn only on request: for fingers computed from their ribs it takes seconds.
         match self.svg.is_some() || !context.is_terminal() {
             true => output.drawn(shown::svg(&model)?, self.svg.as_ref()),

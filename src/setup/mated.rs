@@ -24,6 +24,8 @@ use study::write_file;
 const MAX_SHOWN: usize = 4;
 /// Length of a tip ahead of the part that engages above which it is named, mm: longer than rounded edges.
 const MIN_NOSE_MM: f64 = 0.5;
+/// Ratio of the lengths of all three sides above which two files are probably in different units.
+const MAX_RATIO: f64 = 5.0;
 /// Names of the bodies of an [`Interference`] or a deviation.
 const BODIES: [&str; 2] = ["plug", "socket"];
 
@@ -41,7 +43,7 @@ pub struct MatedTask {
     pub along: InsertionAxis,
     /// Axis of the socket's file along which the jaws close.
     pub jaws: JawAxis,
-    /// Play in rotation; `None` if the plug turns freely.
+    /// Play in rotation, both directions together; `None` if the plug turns freely.
     pub turn: Option<RotationalPlay>,
     /// Whether the normals of plug and of socket pointed inward.
     pub inward: [bool; 2],
@@ -76,6 +78,7 @@ pub fn mated(
 ) -> Result<MatedTask, Failure> {
     let triangles = parts.triangles.each_ref().map(Vec::as_slice);
     let (unit, why) = unit(files, triangles, parts.unit)?;
+    check_sizes(files, triangles, unit, why.is_some(), context)?;
     let mut findings: Vec<(&str, String)> = why.map(|why| ("unit", why)).into_iter().collect();
     let drawn: [Vec<Triangle>; 2] =
         triangles.map(|of| of.iter().map(|t| t.map(|p| p * unit.metres())).collect());
@@ -329,6 +332,41 @@ pub fn unit(
         why += &format!("; in {}, {plug:.1} and {socket:.1} mm", value(other));
     }
     Ok((unit, Some(why)))
+}
+
+/// Checks that plug and socket of separate files are not in different units. In millimetres, or in a unit that was not
+/// guessed, they may be, since a small plug can enter a large housing: a note then asks.
+///
+/// # Errors
+/// If one has [`MAX_RATIO`] times the size of the other in a guessed unit.
+fn check_sizes(
+    files: Files,
+    triangles: [&[Triangle]; 2],
+    unit: Unit,
+    guessed: bool,
+    context: &Context<'_>,
+) -> Result<(), Failure> {
+    let side = |of: &[Triangle], axis| width(extent(of.iter().flatten(), axis));
+    let sides = triangles.map(|of| [0, 1, 2].map(|axis| side(of, axis) * unit.metres() / MM));
+    let [plug, socket] = sides.map(|mut sides| {
+        sides.sort_by(f64::total_cmp);
+        sides
+    });
+    let larger = |a: [f64; 3], b: [f64; 3]| a.iter().zip(b).all(|(a, b)| *a > MAX_RATIO * b);
+    if files[0] == files[1] || !(larger(plug, socket) || larger(socket, plug)) {
+        return Ok(());
+    }
+    let [plug, socket] = sides.map(|[x, y, z]| format!("{x:.1} x {y:.1} x {z:.1} mm"));
+    let sizes = format!("the plug is {plug}, the socket {socket}");
+    if unit != Unit::Mm && guessed {
+        let problem = format!(
+            "read in {}, {sizes}; export both in one unit, or name theirs with --unit",
+            value(unit)
+        );
+        return Err(Failure::in_file(files.join(", "), problem));
+    }
+    context.note(&format!("{sizes}: are both in one unit?"));
+    Ok(())
 }
 
 /// Returns the triangles of a mesh, m, with outward normals and reduced if the mesh is large and closed; and whether

@@ -85,7 +85,7 @@ impl TaskCheck {
         let task = match Task::parse(&source.text, &source.file) {
             Ok(task) => task,
             Err(error) => {
-                let problems = vec![Problem::from(&error)];
+                let problems = Problem::of_file(&error);
                 return Ok(TaskCheck { source, task: None, problems, nominal: None, with });
             }
         };

@@ -5,7 +5,7 @@ use super::request::RobotRequest;
 use crate::{Failure, layout, not_stopped};
 use connector::check::problems;
 use connector::plan::TILT_DEG;
-use connector::tune::{Effort, Stage, Step, Tuned, Tuner, YAW_DEG, tune};
+use connector::tune::{DEFAULT_BUDGET, Effort, Stage, Step, Tuned, Tuner, YAW_DEG, tune};
 use input::units::DEG;
 use insertion::evaluation::INDIFFERENCE_MM;
 use insertion::{Outcome, Task, Window};
@@ -42,7 +42,8 @@ pub fn tune_until_success(
     stop: &AtomicBool,
 ) -> Result<Tuned, Failure> {
     let robot = robot(&with.name)?;
-    let effort = Effort { last, until_enough: true, seed: 0, progress: &|_, _, _, _| () };
+    let progress = &|_: &str, _, _, _| ();
+    let effort = Effort { last, until_enough: true, budget: DEFAULT_BUDGET, seed: 0, progress };
     let tuned = tune(&Tuner::new(task, &robot, with.engine, stop), &effort)?;
     not_stopped(stop)?;
     Ok(tuned)

@@ -50,9 +50,14 @@ fn fault(file: &str, text: &str, mut error: Error, near: Option<&str>) -> InputE
 /// Returns the word nearest to the unknown key or word of a parser's message, of the accepted words and `more` words.
 fn nearest_key<'a>(message: &'a str, more: &[&'a str]) -> Option<&'a str> {
     [UNKNOWN, "unknown variant `"].into_iter().find(|begin| message.starts_with(begin))?;
-    let mut words = message.split('`').skip(1).step_by(2);
-    let (given, accepted) = (words.next()?, words.chain(more.iter().copied()));
-    shipped::nearest(given, &accepted.collect::<Vec<_>>())
+    let words = quoted(message);
+    let (given, accepted) = words.split_first()?;
+    shipped::nearest(given, &[accepted, more].concat())
+}
+
+/// Returns the words in backticks.
+fn quoted(message: &str) -> Vec<&str> {
+    message.split('`').skip(1).step_by(2).collect()
 }
 
 /// Returns the key that is missing according to a parser's message.
@@ -131,10 +136,14 @@ impl<'a> Document<'a> {
             (0..count).for_each(|_| zeros.push(Spanned::new(PLACEHOLDER, number.clone())));
             DeValue::Array(zeros)
         };
-        let text = DeValue::String(Cow::Borrowed(""));
+        let text = |word: String| DeValue::String(Cow::Owned(word));
         let table = DeValue::Table(DeTable::new());
-        let values = [text, number.clone(), zeros(2), zeros(3), zeros(0), table];
-        values.into_iter().filter_map(with).find(fits)
+        let others = [number.clone(), zeros(2), zeros(3), zeros(0), table];
+        // The error of an empty text lists the accepted words, if not every text is.
+        let refused = with(text(String::new())).and_then(|(_, after)| after);
+        let words = refused.as_ref().map_or(Vec::new(), |error| quoted(error.message()));
+        let words = std::iter::once("").chain(words).map(|word| text(word.to_owned()));
+        words.chain(others).filter_map(with).find(fits)
     }
 
     /// Returns the document with a change of the first value to which it applies, and its error; `None` if there is no

@@ -129,7 +129,7 @@ pub fn unknown_path(path: &str, paths: &[&str]) -> String {
     if let Some(prefix) = prefixes.find(|prefix| !next(prefix).is_empty()) {
         return format!("{unknown}{hint} `{prefix}` continues with {}", next(&prefix).join(", "));
     }
-    let words = next("");
+    let words: Vec<String> = next("").iter().map(|word| format!("`{word}`")).collect();
     let Some((last, others)) = words.split_last() else { return unknown };
     format!("{unknown}{hint} a path begins with {} or {last}", others.join(", "))
 }

@@ -164,7 +164,7 @@ mod tests {
             ("friction.plug_sokcet", "did you mean `task.friction.plug_socket`?"),
             ("strategy.phase.side.preload", "did you mean `task.strategy.phase.side.preload_mm`?"),
             ("finger.rcc", "did you mean `finger.rcc_mm`?"),
-            ("tilt", "a path begins with cell, finger, infill_density_percent,"),
+            ("tilt", "a path begins with `cell`, `finger`, `infill_density_percent`,"),
             ("task.clearance_mm.x", "unknown path `task.clearance_mm.x`"),
             ("", "unknown path ``"),
         ] {

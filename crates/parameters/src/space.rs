@@ -4,7 +4,8 @@ pub use crate::numbers::{DENSITY as DENSITY_KEY, DIRECTION as DIRECTION_KEY};
 use crate::numbers::{Kind, out_of_bounds};
 use crate::{Parameter, Path, Scale};
 use ask_tell::GridPoint;
-use input::{Check, InputError, read};
+use input::units::without_unit;
+use input::{Check, InputError, read, wrong_unit};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -43,6 +44,10 @@ impl Variable {
             .into_iter()
             .find_map(|bound| out_of_bounds(&self.key, bound, self.key.bounds()));
         let log = "on a log scale step must be above 1 and low above 0";
+        // Multiples of 0.05 degrees are steps of a printer or a robot, and in radians no whole degrees.
+        let angle = |bound| wrong_unit::angle(bound, [0.0, 90.0], 0.05);
+        let radians = [low, high].into_iter().find_map(angle).map(|words| words.join(" "));
+        let radians = radians.filter(|_| without_unit(&self.key).1 == "°");
         let settable = matches!(self.key.kind(), Kind::Infill | Kind::File | Kind::Finger);
         let unset =
             "cannot be set by a design; accepted are numbers of infill, task file and finger";
@@ -53,6 +58,7 @@ impl Variable {
             (linear && step <= 0.0, "step must be above 0"),
             (!linear && (step <= 1.0 || low <= 0.0), log),
             (outside.is_some(), outside.as_deref().unwrap_or_default()),
+            (radians.is_some(), radians.as_deref().unwrap_or_default()),
             (step < FINEST_STEP, "step must be 1e-6 or more"),
             (wide, "step must not be larger than high - low"),
             (uneven, "high - low must be a whole number of steps, at most 1e6"),
@@ -304,6 +310,23 @@ source = "paper"
     }
 
     #[test]
+    fn an_angle_in_radians_is_rejected() {
+        let of = |high: &str, step: &str| {
+            let text = GOOD.replace(DENSITY_KEY, DIRECTION_KEY).replace("low = 10.0", "low = 0.0");
+            let text = text.replace("high = 30.0", &format!("high = {high}"));
+            Space::parse(&text.replace("step = 1.0", &format!("step = {step}")), "s.toml")
+        };
+        for (high, degrees) in [("0.6981", "40.0"), ("1.0472", "60.0"), ("1.5708", "90.0")] {
+            let error = of(high, high).unwrap_err().to_string();
+            let words = format!("{high} degrees: are these radians?");
+            assert!(error.contains(&words) && error.contains(degrees), "{error}");
+        }
+        for (high, step) in [("1.5", "0.5"), ("1.25", "0.25"), ("22.5", "4.5"), ("40.3", "1.3")] {
+            assert!(of(high, step).is_ok(), "{high}");
+        }
+    }
+
+    #[test]
     fn a_design_in_words() {
         let label = Design::infill(20.0, 7.5).labelled();
         assert_eq!(label, "infill density 20 %, infill direction 7.5°");
@@ -327,10 +350,10 @@ source = "paper"
         let plain = GOOD.replace("source = \"paper\"\n", "");
         let space = Space::parse(&plain, "s.toml").unwrap();
         assert_eq!(toml::from_str::<Space>(&toml::to_string(&space).unwrap()).unwrap(), space);
-        let text = "name = \"s\"\n[[parameter]]\nkey = \"infill_density_percent\"\nlow = 10.0\n\
+        let text = "name = \"s\"\n[[parameter]]\nlow = 10.0\n\
                     [[parameter]]\nkey = \"task.friction.plug_sokcet\"\nhigh = 1.0";
         let error = Space::parse(text, "s.toml").unwrap_err().to_string();
-        for key in ["parameter.high", "parameter.step"] {
+        for key in ["parameter.key", "parameter.high", "parameter.step"] {
             assert_eq!(error.matches(&format!("missing field `{key}`")).count(), 1, "{error}");
         }
         assert_eq!(

@@ -19,7 +19,7 @@ pub fn table(model: &Model) -> String {
     let mut text = format!(
         "Stiffness of one finger, fitted to {}{}.\n\
          Leave-one-out errors e: each design is predicted by a model fitted without it.\n\
-         Root mean square, mean magnitude, and root mean square in predicted deviations (sd):\n\n",
+         Root mean square, mean magnitude, root mean square in predicted deviations (sd):\n\n",
         model.counted(),
         if model.ratios { " and computed from its ribs" } else { "" },
     );

@@ -26,7 +26,10 @@ pub struct Request {
     /// The file
     #[arg(value_name = "FILE", default_value = BENCH_FILE)]
     pub file: String,
-    /// Task: ket8, ket12, rj45, usb, rj45_latch, usb_a, or the path of a task file
+    /// The file, by the option of other commands
+    #[arg(long, hide = true, value_name = "FILE", conflicts_with = "file")]
+    pub measurements: Option<String>,
+    /// Task: ket8, ket12, rj45, usb, rj45_latch, usb_a, the path of a task file, or a name in the measurement file
     #[arg(long, value_name = "NAME")]
     pub task: Option<String>,
     /// Infill density, percent
@@ -47,10 +50,10 @@ pub struct Request {
     /// The finger was tested, but no range could be measured
     #[arg(long)]
     pub not_measurable: bool,
-    /// Failure class below the window, 1 to 4
+    /// Failure class below the window: 1 to 4, or its name
     #[arg(long, value_name = "CLASS")]
     pub failure_negative: Option<String>,
-    /// Failure class above the window, 1 to 4
+    /// Failure class above the window: 1 to 4, or its name
     #[arg(long, value_name = "CLASS")]
     pub failure_positive: Option<String>,
     /// Number of measurements whose mean is given
@@ -70,7 +73,7 @@ pub struct Request {
     pub set: Vec<(String, String)>,
     /// Refused with a tip: other commands name the file that they write by this option
     #[arg(long, hide = true, value_name = "FILE", value_parser = UnknownArgumentValueParser::suggest(
-        "the measurement file has no option: optimize measure add FILE"))]
+        "the measurement file is named without it: optimize measure add FILE"))]
     pub out: Option<String>,
     /// Check the line without writing it
     #[arg(long, hide = true)]
@@ -88,7 +91,7 @@ fn setting(text: &str) -> Result<(String, String), String> {
 
 impl command::Request for Request {
     fn run(&self, _context: &Context<'_>) -> Result<Output, Failure> {
-        let (file, mut cells) = (&self.file, self.cells());
+        let (file, mut cells) = (self.measurements.as_ref().unwrap_or(&self.file), self.cells());
         if MEASUREMENTS.iter().any(|shipped| shipped.name == file) {
             let problem = format!("`{file}` is shipped; give the path of your own file");
             return Err(Failure::usage(problem));
@@ -134,7 +137,16 @@ fn add(
     dry_run: bool,
 ) -> Result<Vec<Experiment>, Failure> {
     let mut own = None;
-    if let Some((_, name)) = cells.iter_mut().find(|(column, _)| *column == "task") {
+    let unusable = |error| Failure::in_file(file, format!("cannot add a line: {error}"));
+    let unwritable = |error| Failure::running(format!("{file}: cannot write: {error}"));
+    // Locked while it is read and written, since others add lines, too.
+    let mut table = LockedFile::open(Path::new(file), LARGEST_INPUT).map_err(unusable)?;
+    let before = parse(table.text(), file).map_err(Failure::input)?;
+    let named = own_tasks(table.text());
+    let is_new =
+        |name: &str| !named.contains_key(name) && before.iter().all(|line| line.task != name);
+    let task = cells.iter_mut().find(|(column, _)| *column == "task");
+    if let Some((_, name)) = task.filter(|(_, name)| is_new(name)) {
         let TaskFile { source, task } = read_task(name)?;
         let shipped =
             [TASKS, COMMERCIAL].concat().iter().any(|shipped| shipped.text == source.text);
@@ -145,13 +157,7 @@ fn add(
         own = (!shipped).then(|| (task.name.clone(), path.display().to_string()));
         *name = task.name;
     }
-    // Read last, since others may have added lines meanwhile.
-    let unusable = |error| Failure::in_file(file, format!("cannot add a line: {error}"));
-    let unwritable = |error| Failure::running(format!("{file}: cannot write: {error}"));
-    let mut table = LockedFile::open(Path::new(file), LARGEST_INPUT).map_err(unusable)?;
-    parse(table.text(), file).map_err(Failure::input)?;
-    let new =
-        |(name, path): &(String, String)| own_tasks(table.text()).get(&**name) != Some(&&**path);
+    let new = |(name, path): &(String, String)| named.get(&**name) != Some(&&**path);
     let comment = own.filter(new).map_or(String::new(), |(name, path)| own_task(&name, &path));
     let new = appended(table.text(), &comment, &cells).map_err(Failure::input)?;
     // Any problem is one of the new line.

@@ -207,7 +207,7 @@ fn text(
         "written       {out}\nplug          {plug}, {plug_parts} convex parts: held by the fingers\n\
          socket        {socket}, {socket_parts} convex parts: fixed\n\
          axes          of the socket's file: inserted {along}, the jaws close along {jaws}; in the task these are -z and y\n\
-         clearance     {clearance_y_mm:.3} mm in the task's y, {clearance_x_mm:.3} mm in its x{turn}\n\
+         clearance     between plug.part and socket.part, both sides together: {clearance_y_mm:.3} mm in the task's y, {clearance_x_mm:.3} mm in its x{turn}\n\
          body          {wide:.1} x {high:.1} mm between the pads (the task's y, x), up to its z = {long:.1} mm when seated\n"
     );
     text += &lines(findings);

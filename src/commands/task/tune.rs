@@ -6,7 +6,7 @@ use crate::setup::tune::{outcome, ranges, step_json, tilt_text, tried, turned_te
 use crate::setup::words::parse_number;
 use crate::{Context, Failure, Output, RobotRequest, TaskFile, TaskSource, command, not_stopped};
 use connector::check::problems;
-use connector::tune::{Candidate, Effort, MAX_WINDOWS, Stage, Step, Tuned, Tuner, tune};
+use connector::tune::{Candidate, DEFAULT_BUDGET, Effort, Stage, Step, Tuned, Tuner, tune};
 use connector::{picture, rewrite};
 use input::Place;
 use input::shipped::{Source, TASKS};
@@ -25,7 +25,7 @@ use study::write_file;
 ///
 /// First the start is taught with a medium finger; then the strategies of the shipped tasks are tried, scaled to
 /// this opening; then tilt, strokes, preload and push speed are optimized for the smallest range of a soft, a
-/// medium and a stiff finger. Exit code 1 if nothing inserts. Ctrl-C writes the best strategy so far.
+/// medium and a stiff finger. Exit code 1 if nothing inserts. Ctrl-C or SIGTERM writes the best strategy so far.
 #[derive(Debug, Clone, clap::Args)]
 #[command(after_help = "Example: optimize task tune mine.toml --svg mine.svg")]
 pub struct Request {
@@ -35,6 +35,10 @@ pub struct Request {
     /// Robot and contact engine.
     #[command(flatten)]
     pub robot: RobotRequest,
+    /// Largest number of windows to measure; start, shipped strategies and final checks are not shortened
+    #[arg(long, value_name = "N", default_value_t = DEFAULT_BUDGET,
+          value_parser = clap::value_parser!(u16).range(1..=10_000))]
+    pub budget: u16,
     /// Seed of the search
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub seed: u64,
@@ -80,7 +84,7 @@ impl command::Request for Request {
     fn run(&self, context: &Context<'_>) -> Result<Output, Failure> {
         let stop = context.stop;
         context.cancel_on_interrupt()?;
-        context.begin(MAX_WINDOWS as f64);
+        context.begin(self.budget.into());
         let file = TaskFile::parse(TaskSource::Named(self.file.clone()).read()?)?;
         let target = self.target()?;
         if let Some(problem) = problems(&file.task).first() {
@@ -93,8 +97,9 @@ impl command::Request for Request {
         let report = |what: &str, cost: usize, done, of| {
             context.part(what, [done, of], cost as f64);
         };
+        let (budget, seed) = (self.budget, self.seed);
         let effort =
-            Effort { last: Stage::Search, until_enough: false, seed: self.seed, progress: &report };
+            Effort { last: Stage::Search, until_enough: false, budget, seed, progress: &report };
         let tuned = tune(&tuner, &effort)?;
         if context.check().is_err() {
             return Err(self.interrupted(&file, &tuned, target)?);

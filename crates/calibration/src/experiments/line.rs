@@ -1,6 +1,6 @@
 //! One line of a measurement file: its cells, and the checks of their combination.
 
-use super::{Experiment, NOT_MEASURABLE};
+use super::{Experiment, NOT_MEASURABLE, hint};
 use csv::StringRecord;
 use input::{InputError, Place, shown, wrong_unit};
 use insertion::{DENSITY_KEY, DIRECTION_KEY, Design, FailureClass};
@@ -202,11 +202,17 @@ fn range(text: &str) -> Result<Option<f64>, String> {
     }
 }
 
-/// Parses the number of a failure class.
+/// Parses the number or the name of a failure class.
 pub(crate) fn failure(text: &str) -> Result<FailureClass, String> {
-    let class = text.parse::<u8>().ok().and_then(|number| FailureClass::try_from(number).ok());
-    let known = FailureClass::ALL.map(|class| format!("{} ({})", class.number(), class.label()));
-    class.ok_or_else(|| format!("unknown failure class `{text}`; available: {}", known.join(", ")))
+    let all = FailureClass::ALL;
+    let is = |class: &FailureClass| {
+        text == class.number().to_string() || [class.label(), class.short()].contains(&text)
+    };
+    all.into_iter().find(is).ok_or_else(|| {
+        let known = all.map(|class| format!("{} ({})", class.number(), class.label())).join(", ");
+        let near = hint(text, &all.map(FailureClass::label));
+        format!("unknown failure class `{text}`{near}; available: {known}")
+    })
 }
 
 /// Parses the number of measurements averaged into the values.

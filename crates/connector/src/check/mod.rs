@@ -31,23 +31,25 @@ impl Problem {
     fn new(key: impl Into<String>, problem: impl Into<String>, remedy: impl Into<String>) -> Self {
         Problem { key: key.into(), problem: problem.into(), remedy: remedy.into() }
     }
-}
 
-impl From<&InputError> for Problem {
-    fn from(error: &InputError) -> Self {
+    /// Returns the faults of an invalid file.
+    pub fn of_file(error: &InputError) -> Vec<Self> {
         let problem = &*error.problem;
         let Some(key) = &error.place.key else {
-            // The parser names an unknown or missing key in backticks; further faults follow the first.
-            let first = problem.split("\nTOML").next().unwrap_or(problem);
-            let key = first.split_once(" field `").and_then(|(_, rest)| rest.split('`').next());
-            let key = key.unwrap_or("the file");
-            let remedy = "see docs/guide/tasks.md, or `optimize task show usb`";
-            return Problem::new(key, problem, remedy);
+            let fault = |text: &str| {
+                // The parser names an unknown or missing key in backticks.
+                let key = text.split_once(" field `").and_then(|(_, rest)| rest.split('`').next());
+                let remedy = "see docs/guide/tasks.md, or `optimize task show usb`";
+                Problem::new(key.unwrap_or("the file"), text, remedy)
+            };
+            // All faults begin with the same words.
+            let faults = problem.replace("\nTOML parse error", "\0TOML parse error");
+            return faults.split('\0').map(fault).collect();
         };
         // The text of an error states the fault and then, after a semicolon, what is accepted.
         let whole = (problem, "see docs/guide/tasks.md");
         let (problem, remedy) = problem.split_once("; ").unwrap_or(whole);
-        Problem::new(key, problem, remedy)
+        vec![Problem::new(key, problem, remedy)]
     }
 }
 

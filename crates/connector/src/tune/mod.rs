@@ -16,8 +16,8 @@ use insertion::{DesignError, Finger, Outcome, Strategy, Task};
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Largest number of windows that are measured.
-pub const MAX_WINDOWS: usize = 150;
+/// Default of [`Effort::budget`].
+pub const DEFAULT_BUDGET: u16 = 150;
 /// Number of candidates proposed at a time; fixed, so that results do not depend on the number of threads.
 const BATCH: usize = 4;
 /// Number of windows measured for a candidate: one for each finger.
@@ -92,6 +92,9 @@ pub struct Effort<'a> {
     pub last: Stage,
     /// Whether to stop after the first stage with a sufficient window ([`ENOUGH_MM`]).
     pub until_enough: bool,
+    /// Largest number of windows that are measured; the search ends early enough for the checks, the stages before it
+    /// are completed.
+    pub budget: u16,
     /// Seed of the search.
     pub seed: u64,
     /// Progress callback: the change tried, its number of windows, windows measured so far, and their maximum.
@@ -153,7 +156,7 @@ impl Tuned {
             self.windows += last.cost;
             let best = self.steps.get(self.best).map_or(last.score, |best| best.tried.score);
             let text = format!("{:.1} mm so far; {change}", best.max(last.score).max(0.0));
-            (effort.progress)(&text, last.cost, self.windows, MAX_WINDOWS);
+            (effort.progress)(&text, last.cost, self.windows, effort.budget.into());
             let second = self.steps.len() == 1;
             let better = self.steps.get(self.best).is_some_and(|best| {
                 let (own, best) = (best.stage == stage, &best.tried);
@@ -211,7 +214,7 @@ impl Tuned {
         let free = variables::variables(&task.strategy)?;
         let grid = Grid::new(vec![variables::LEVELS; free.len()]);
         let mut optimizer = ask_tell::build(OptimizerKind::Gp, grid.clone(), effort.seed);
-        let limit = MAX_WINDOWS - Self::CHECKS - EACH;
+        let limit = usize::from(effort.budget).saturating_sub(Self::CHECKS + EACH);
         let middle = grid.snap(&vec![0.5; free.len()]);
         optimizer.tell(&[Observation::new(middle, Some(self.best().tried.score))]);
         while self.windows + BATCH * EACH <= limit {

@@ -5,7 +5,7 @@ use crate::common::{Ran, Studies, optimize, optimize_line};
 use connector::check::{Problem, problems};
 use connector::draft::{Dimensions, Size, draft};
 use connector::mesh::{Body, Surface, pick, read};
-use connector::nominal::explain;
+use connector::nominal::{explain, weak_grip};
 use finger_opt::setup::task::TaskFile;
 use input::shipped::TASKS;
 use input::units::MM;
@@ -398,6 +398,50 @@ fn a_check_says_what_a_reader_finds() {
     for key in ["plug.mass_g", "grip.hold"] {
         assert!(keys.contains(&&key.into()), "{keys:?}");
     }
+}
+
+/// A rigid robot stops with the plug on the seat, 6 mm before the end of the push.
+#[test]
+fn a_robot_stop_at_the_seat_comes_first_with_a_push_that_avoids_it() {
+    let check =
+        |robot: &str| said("task check usb_a --json --robot", &[robot]).json()["warnings"].take();
+    assert_eq!(check("servo"), serde_json::json!([]));
+    let warned = check("rigid");
+    let warned = warned[0].as_str().expect("a warning");
+    let words = "the plug is seated, but the robot rigid stops. Set `strategy.phase.assembly.move_mm.z` to -";
+    assert!(warned.starts_with(words), "{warned}");
+    let evaluate = "evaluate --task usb --robot rigid --density 20 --direction 10 --no-ribs";
+    said(evaluate, &[]).says(&["Not usable as it is: the robot stops in 1"]);
+    let push = said(evaluate, &["--json"]).json()["shorter_push"].take();
+    let set = format!("task.{}={}", push["key"].as_str().expect("a key"), push["value_mm"]);
+    let shorter = said(evaluate, &["--json", "--set", &set]).json();
+    assert_eq!(shorter["shorter_push"], Value::Null);
+    assert_eq!(
+        [&shorter["range_mm"], &shorter["peak_force_n"]],
+        [&push["range_mm"], &push["peak_force_n"]]
+    );
+    assert!(shorter["peak_force_n"].as_f64().is_some_and(|force| force < 225.0), "{shorter}");
+}
+
+#[test]
+fn a_grip_that_carries_neither_weight_nor_drag_is_warned_of() {
+    for file in TASKS {
+        let task = Task::parse(file.text, file.file).unwrap();
+        assert_eq!(weak_grip(&task, &trial(&task)), None, "{}", file.name);
+    }
+    let task = Task::parse(USB, "usb.toml").unwrap();
+    let weak = changed(USB, "force_n = 5.0", "force_n = 0.05").unwrap();
+    let warned = weak_grip(&weak, &trial(&task)).unwrap();
+    let words = "grip.force_n: with 0.05 N the friction of the two pads is 0.10 N, less than ";
+    assert!(warned.starts_with(words), "{warned}");
+    assert!(warned.contains("the friction of the plug on the rim; give at least "), "{warned}");
+    // 2 kg weigh 19.6 N; two pads with a friction of 1 hold twice the grip force.
+    let heavy = changed(USB, "mass_g = 5.0", "mass_g = 2000.0").unwrap();
+    let warned = weak_grip(&heavy, &trial(&task)).unwrap();
+    assert!(
+        warned.ends_with("less than 19.62 N, the weight of the plug; give at least 9.9 N"),
+        "{warned}"
+    );
 }
 
 /// Triangles of an example mesh, mm.

@@ -127,10 +127,11 @@ class Answer(Result):
 
     ``verdict`` is ``print`` (print ``finger``), ``any`` (print any of the ties), ``simulated`` (``finger`` is the best in
     simulation, or ties; no measurement supports it), ``measured_before`` (use a finger that was measured), ``choose``
-    (choose from a Pareto front), ``nothing_inserts`` or ``none_feasible``.
+    (choose from a Pareto front), ``nothing_inserts``, ``none_feasible`` or ``robot_stops`` (in most trials).
     """
 
-    verdict: Literal["print", "any", "simulated", "measured_before", "choose", "nothing_inserts", "none_feasible"]
+    verdict: Literal["print", "any", "simulated", "measured_before", "choose", "nothing_inserts", "none_feasible",
+                     "robot_stops"]
     headline: str
     expectation: str
     #: Values of the finger by key.

@@ -59,6 +59,8 @@ class TaskCheck(Result):
     valid: bool
     problems: tuple[Problem, ...]
     nominal: Nominal | None
+    #: A weak grip, and a robot stop although the plug is seated.
+    warnings: tuple[str, ...]
     #: Strategy with which a task that does not insert would insert, if one was found.
     mended_by: Step | None = None
     svg: str = field(default="", repr=False, metadata=PICTURE)

@@ -124,6 +124,17 @@ class Subject(Result):
     stiffness: Springs
 
 
+@dataclass(frozen=True, repr=False)
+class ShorterPush(Result):
+    """Push that inserts without a robot stop: its number, the value it replaces, and range and force with it."""
+
+    key: str
+    value_mm: float
+    instead_of_mm: float
+    range_mm: float
+    peak_force_n: float
+
+
 @dataclass(frozen=True, kw_only=True, repr=False)
 class Evaluation(Window, Subject):
     """Tolerance window of one finger on one task.
@@ -131,6 +142,8 @@ class Evaluation(Window, Subject):
     ``range_mm`` is its width, ``negative_mm`` and ``positive_mm`` are its ends.
     """
 
+    #: Shorter push, if the robot stops in most trials and such a push is found.
+    shorter_push: ShorterPush | None = None
     wall_s: float = field(compare=False)
     #: Bands in which the outcomes differ; only with ``repeat``.
     bands: Bands | None = None

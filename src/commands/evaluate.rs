@@ -8,8 +8,10 @@ use crate::{
     not_stopped,
 };
 use calibration::experiments::Experiment;
+use connector::push::{self, ShorterPush};
 use insertion::evaluation::robustness::repeat::Bands;
-use insertion::{Evaluation, Outcome, Plan, Scenario, Search, grid_mm};
+use insertion::evaluation::tolerance::evaluate_grasp;
+use insertion::{Evaluation, Grasp, Outcome, Plan, Scenario, Search, Task, grid_mm};
 use report::answer::words::{self, mm, number};
 use report::answer::{ExcessForce, lines};
 use serde::{Serialize, Serializer};
@@ -61,6 +63,9 @@ pub struct Evaluated {
     /// Tolerance window and other simulated values.
     #[serde(flatten)]
     pub evaluation: Evaluation,
+    /// Shorter push with which the robot does not stop, if it stops in most trials and such a push is found.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub shorter_push: Option<ShorterPush>,
     /// Wall-clock duration of the evaluation, s.
     pub wall_s: f64,
     /// Measurements of this finger on the bench.
@@ -99,6 +104,7 @@ impl Request {
         let evaluation = setup.evaluator.simulate(&chosen.scenario, self.search(), &plan, stop)?;
         not_stopped(stop)?;
         let wall_s = clock.elapsed().as_secs_f64();
+        let shorter_push = shorter_push(&setup, &chosen, &evaluation, stop)?;
         let window = &evaluation.window;
         let computed = self.by_ribs(&setup, &chosen, stop)?;
         drop(busy);
@@ -116,7 +122,7 @@ impl Request {
         let repeat = self.repeat.filter(|_| window.nominal == Outcome::Inserted);
         let bands = repeat.map(bands).transpose()?;
         context.end();
-        Ok(Evaluated { chosen, evaluation, bands, computed, wall_s, measured })
+        Ok(Evaluated { chosen, evaluation, shorter_push, bands, computed, wall_s, measured })
     }
 
     /// Returns the setup, and the plan of the trials under drawn errors.
@@ -165,6 +171,26 @@ impl Request {
             Err(failure) => ByRibs::Refused(failure.to_string()),
         }))
     }
+}
+
+/// Finds a shorter push for an evaluation, if the robot stops in most of its trials.
+fn shorter_push(
+    setup: &Setup,
+    ChosenFinger { scenario, .. }: &ChosenFinger,
+    evaluation: &Evaluation,
+    stop: &AtomicBool,
+) -> Result<Option<ShorterPush>, Failure> {
+    if !evaluation.mostly_stopped() {
+        return Ok(None);
+    }
+    let again = |task: &Task| {
+        let scenario = Scenario { task: task.clone(), ..scenario.clone() };
+        let rig = setup.evaluator.rig(&scenario, evaluation.taught, 1.0)?;
+        let grasp = Grasp { stop, ..Grasp::of(&scenario.finger) };
+        let found = evaluate_grasp(&*rig, grasp, Search::default());
+        not_stopped(stop).map(|()| found)
+    };
+    push::shorter_push(&scenario.task, &scenario.robot, again)
 }
 
 /// Serializes the evaluation by the ribs, or the reason why there is none.
@@ -218,8 +244,11 @@ impl Evaluated {
         let [c1, c2, c3, c4] = evaluation.failure_counts;
         let Scenario { task, robot, .. } = &chosen.scenario;
         let force = ExcessForce::on(&task.name, evaluation, (task.limits.force, Some(robot)));
+        // Robot stops are named in the first line.
+        let stopped = evaluation.mostly_stopped();
+        let force = force.filter(|excess| excess.of_connector || !stopped);
         let force = force.map(|excess| ("force".to_owned(), excess.words(&robot.name)));
-        let mut rest: Vec<_> = force.into_iter().chain(lines::most_stops(evaluation)).collect();
+        let mut rest: Vec<_> = force.into_iter().collect();
         rest.push(("range".to_owned(), mm(evaluation.window.range_mm())));
         rest.extend(self.measured_lines());
         rest.extend(lines::window(evaluation));
@@ -228,14 +257,22 @@ impl Evaluated {
             evaluation.diverged, evaluation.trials
         );
         rest.push(("failures".to_owned(), failures));
-        rest.push(("peak force".to_owned(), number(evaluation.peak_force_n, 1, "N")));
+        let peak = match evaluation.peak_force_n.is_nan() {
+            true => "none: it is that of the trials that insert".to_owned(),
+            false => number(evaluation.peak_force_n, 1, "N"),
+        };
+        rest.push(("peak force".to_owned(), peak));
         rest.push(("mating force".to_owned(), words::mating_force(task.largest_mating_force())));
         rest.extend(lines::taught(evaluation.taught.map(grid_mm)));
         rest.extend(lines::drawn(evaluation));
         let by_ribs = |computed| lines::by_ribs(computed, (0, evaluation));
         rest.extend(self.computed.as_ref().and_then(by_ribs));
         rest.extend(self.disagreement().map(|remark| (String::new(), remark.to_owned())));
-        let (chosen, rest) = (chosen.text(), layout::lines(rest));
+        let not_usable = stopped.then(|| {
+            let remedy = push::remedy(self.shorter_push.as_ref());
+            format!("{}. {remedy}\n", words::not_usable(evaluation, ""))
+        });
+        let (chosen, rest) = (not_usable.unwrap_or_default() + &chosen.text(), layout::lines(rest));
         let bands = self.bands.as_ref().map(bands_text).unwrap_or_default();
         layout::wrapped(&format!("{chosen}{rest}{bands}time          {:.1} s\n", self.wall_s))
     }

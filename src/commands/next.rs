@@ -12,6 +12,7 @@ use calibration::calibrate::leave_one_out;
 use calibration::next::{Advice, Fingers, advise};
 use input::shipped::Source;
 use insertion::Design;
+use insertion::outcome::STOP_REMEDY;
 use insertion::stiffness::designs;
 use report::answer::words::design;
 use serde::Serialize;
@@ -64,6 +65,9 @@ pub struct Advised {
     loo_inside: usize,
     /// Fingers that were printed, but of which no range could be measured.
     not_measurable: Vec<Design>,
+    /// Number of simulations with a robot stop in most trials, and of all simulations.
+    stopped_simulations: usize,
+    simulations: usize,
     /// Whether the measurement file does not exist yet.
     measurements_missing: bool,
     #[serde(flatten)]
@@ -116,8 +120,11 @@ impl command::Request for Request {
         let (settings, dimension) = (Settings { done: &done, ..settings }, layout.dimension());
         let left_out = leave_one_out((&benches, 0), &subject.designs, dimension, &settings);
         context.check()?;
+        let [stopped_simulations, simulations] = subject.emulator.stopped();
         let value = Advised {
             task: subject.task.clone(),
+            stopped_simulations,
+            simulations,
             measured: subject.measured().len() - failed.len(),
             loo_designs: left_out.len(),
             loo_inside: left_out.iter().filter(|one| one.inside()).count(),
@@ -138,7 +145,15 @@ impl Advised {
     fn text(&self, measurements: &str, print_cost_mm: f64) -> String {
         let Advised { task, measured, measurements_missing, advice, loo_designs, .. } = self;
         let file = measurements_missing.then(|| format!(" ({measurements} does not exist)"));
-        let mut text = match advice.best_known_mm {
+        let [stopped, of] = [self.stopped_simulations, self.simulations];
+        let not_usable = (stopped > of / 2).then(|| {
+            format!(
+                "Not usable as it is: the robot stops in most trials of {stopped} of {of} simulations. \
+                 {STOP_REMEDY}; `optimize evaluate` computes a push\n"
+            )
+        });
+        let mut text = not_usable.unwrap_or_default();
+        text += &match advice.best_known_mm {
             Some(best) => {
                 let measured = input::counted(*measured, "finger");
                 format!("{task}: {measured} measured, the best of them expected at {best:.1} mm\n")

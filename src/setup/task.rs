@@ -3,15 +3,18 @@
 use super::files::{find, robot};
 use super::request::{RobotRequest, TaskSource};
 use super::tune::{self, tune_until_success};
+use crate::layout::lines;
 use crate::{Failure, not_stopped};
 use connector::check::{Problem, problems};
 use connector::nominal;
+use connector::push::{self, shorter_push};
 use connector::tune::{Stage, Tuned};
 use input::Place;
 use input::shipped::{SPACES, Source};
 use input::units::N_PER_MM;
+use insertion::evaluation::tolerance::evaluate_grasp;
 use insertion::stiffness::representative_designs;
-use insertion::{EngineKind, Finger, Grasp, Outcome, Recording, Robot, Space, Task, Trial};
+use insertion::{EngineKind, Finger, Grasp, Outcome, Recording, Robot, Search, Space, Task, Trial};
 use report::answer::words::mating_force;
 use serde_json::{Value, json};
 use std::sync::atomic::AtomicBool;
@@ -71,6 +74,8 @@ pub struct TaskCheck {
     pub problems: Vec<Problem>,
     /// Finger, trial and explanation of the nominal start; `None` if there are problems.
     pub nominal: Option<(Finger, Trial, String)>,
+    /// Warnings about the nominal start.
+    pub warnings: Vec<String>,
     /// Robot and engine of the trial.
     with: RobotRequest,
 }
@@ -86,19 +91,20 @@ impl TaskCheck {
             Ok(task) => task,
             Err(error) => {
                 let problems = Problem::of_file(&error);
-                return Ok(TaskCheck { source, task: None, problems, nominal: None, with });
+                let (nominal, warnings) = (None, Vec::new());
+                return Ok(TaskCheck { source, task: None, problems, nominal, warnings, with });
             }
         };
         let problems = problems(&task);
-        let nominal = match problems.is_empty() {
-            true => {
-                let (finger, trial) = nominal_start(&task, &robot(&with.name)?, with.engine, stop)?;
-                let explanation = nominal::explain(&task, &trial);
-                Some((finger, trial, explanation))
-            }
-            false => None,
-        };
-        Ok(TaskCheck { source, task: Some(task), problems, nominal, with })
+        let (mut nominal, mut warnings) = (None, Vec::new());
+        if problems.is_empty() {
+            let robot = robot(&with.name)?;
+            let (finger, trial) = nominal_start(&task, &robot, with.engine, stop)?;
+            warnings = nominal_warnings((&task, &trial), &robot, with.engine, stop)?;
+            let explanation = nominal::explain(&task, &trial);
+            nominal = Some((finger, trial, explanation));
+        }
+        Ok(TaskCheck { source, task: Some(task), problems, nominal, warnings, with })
     }
 
     /// Tunes a task whose nominal start fails; `None` if it inserts, or if there are problems.
@@ -142,6 +148,28 @@ pub(crate) fn nominal_start(
     Ok((finger, trial))
 }
 
+/// Returns warnings about a trial of [`nominal_start`]: a weak grip, and a robot stop although the plug is seated.
+pub(crate) fn nominal_warnings(
+    (task, trial): (&Task, &Trial),
+    robot: &Robot,
+    engine: EngineKind,
+    stop: &AtomicBool,
+) -> Result<Vec<String>, Failure> {
+    let mut found: Vec<String> = nominal::weak_grip(task, trial).into_iter().collect();
+    if trial.outcome == Outcome::Inserted && trial.robot_stopped {
+        let again = |task: &Task| {
+            let (_, finger) = medium(task);
+            let rig = engine.rig(task, robot, &finger, 1.0)?;
+            let grasp = Grasp { stop, ..Grasp::of(&finger) };
+            let found = evaluate_grasp(&*rig, grasp, Search::default());
+            not_stopped(stop).map(|()| found)
+        };
+        let remedy = push::remedy(shorter_push(task, robot, again)?.as_ref());
+        found.push(format!("the plug is seated, but the robot {} stops. {remedy}", robot.name));
+    }
+    Ok(found)
+}
+
 /// Returns the measured finger of medium stiffness, with the finger model of the task, and the recording of its trial
 /// at the nominal start.
 pub(crate) fn nominal_recording(
@@ -174,8 +202,9 @@ impl TaskCheck {
             json["explanation"] = json!(explanation);
             json
         });
-        let problems = &self.problems;
-        json!({"valid": problems.is_empty(), "problems": problems, "nominal": nominal})
+        let (problems, warnings) = (&self.problems, &self.warnings);
+        let valid = problems.is_empty();
+        json!({"valid": valid, "problems": problems, "nominal": nominal, "warnings": warnings})
     }
 
     /// Returns a line for each problem and one for the nominal start.
@@ -203,7 +232,8 @@ impl TaskCheck {
                 trial.slip_mm,
             )),
         }
-        text
+        let warnings = self.warnings.iter().map(|text| ("warning".to_owned(), text.clone()));
+        text + &lines(warnings)
     }
 
     /// Returns the command that tunes the task with the same robot.

@@ -4,7 +4,7 @@ use super::optimizer::optimizer;
 use super::{film, on_bench, printable, report, unusable};
 use crate::failure::bad_config;
 use crate::progress::cost;
-use crate::setup::task::nominal_start;
+use crate::setup::task::{nominal_start, nominal_warnings};
 use crate::{Context, Failure, RunRequest, Setup};
 use ::report::answer::Answer;
 use ::report::answer::command::repair;
@@ -64,7 +64,7 @@ impl OpenStudy {
 
     /// Shows the number of new measurements, and a warning for each task to which a part of the cell does not
     /// apply. Before the first evaluation, it also warns of each nominal start of a task file that fails with a
-    /// finger of medium stiffness.
+    /// finger of medium stiffness or stops the robot, and of a weak grip.
     ///
     /// # Errors
     /// If the nominal start cannot be simulated.
@@ -78,13 +78,16 @@ impl OpenStudy {
         for (place, Template { task, .. }) in templates.iter().enumerate() {
             let remark = cell.as_ref().and_then(|cell| cell.remark(&task.name));
             remark.iter().for_each(|remark| warn(remark));
-            if task.strategy.rule == StartRule::Given
-                && record.evaluations.is_empty()
-                && let (_, trial) = nominal_start(task, robot, *engine, &NEVER)?
-                && trial.outcome != Outcome::Inserted
-            {
+            if task.strategy.rule == StartRule::Taught || !record.evaluations.is_empty() {
+                continue;
+            }
+            let (_, trial) = nominal_start(task, robot, *engine, &NEVER)?;
+            let name = &task.name;
+            for text in nominal_warnings((task, &trial), robot, *engine, &NEVER)? {
+                warn(&format!("{name}: with the medium finger: {text}"));
+            }
+            if trial.outcome != Outcome::Inserted {
                 let ends = outcome(trial.outcome) + stop_words(trial.robot_stopped);
-                let name = &task.name;
                 let (command, why) = repair(&record, self.study.dir(), place);
                 warn(&format!(
                     "{name}: with the medium finger the nominal start ends with {ends}; {command} {why}"

@@ -54,8 +54,8 @@ impl Sweep {
             let chosen = finger.choose_with(setup, &setup.evaluator)?;
             let (evaluation, _) = evaluator.evaluate_scenario(&chosen.scenario, plan)?;
             let wall_s = clock.elapsed().as_secs_f64();
-            let (bands, computed, measured) = (None, None, Vec::new());
-            Ok(Evaluated { chosen, evaluation, bands, computed, wall_s, measured })
+            let (shorter_push, bands, computed, measured) = (None, None, None, Vec::new());
+            Ok(Evaluated { chosen, evaluation, shorter_push, bands, computed, wall_s, measured })
         };
         let found: Vec<_> = self.pool.install(|| fingers.par_iter().map(one).collect());
         not_stopped(stop)?;

@@ -26,6 +26,8 @@ struct Point {
     range_mm: f64,
     /// Failures below and above the window.
     failures: [Option<FailureClass>; 2],
+    /// Whether the robot stopped in most trials.
+    stopped: bool,
 }
 
 /// Emulator of the range on one task.
@@ -86,7 +88,8 @@ impl Emulator {
             let window = &evaluation.window;
             let failures =
                 [window.end_negative, window.end_positive].map(|end| end.and_then(Outcome::class));
-            Ok(Point { range_mm: window.range_mm(), failures, at })
+            let (range_mm, stopped) = (window.range_mm(), evaluation.mostly_stopped());
+            Ok(Point { range_mm, failures, stopped, at })
         };
         let points =
             points.into_par_iter().map(run).collect::<Result<Vec<Point>, CalibrationError>>()?;
@@ -123,6 +126,11 @@ impl Emulator {
         (self.mean_mm + self.sd_mm * self.process.mean(at)).max(0.0)
     }
 
+    /// Returns the number of simulations with a robot stop in most trials, and of all simulations.
+    pub fn stopped(&self) -> [usize; 2] {
+        [self.points.iter().filter(|point| point.stopped).count(), self.points.len()]
+    }
+
     /// Returns the most frequent failure class at each end of the window among the `count` simulations nearest to a
     /// design in the unit cube of the space.
     pub fn failures(&self, design: &[f64], count: usize) -> [Option<FailureClass>; 2] {
@@ -154,6 +162,7 @@ mod tests {
             .map(|at| Point {
                 range_mm: range(&at),
                 failures: [Some(FailureClass::Jammed), None],
+                stopped: at[0] < 0.5,
                 at,
             })
             .collect();
@@ -162,5 +171,7 @@ mod tests {
         let at = [0.3, 0.6, 0.2];
         assert!((emulator.range_mm(&at) - range(&at)).abs() < 0.3);
         assert_eq!(emulator.failures(&at[..2], 5), [Some(FailureClass::Jammed), None]);
+        let [stopped, all] = emulator.stopped();
+        assert!(all == 60 && (25..=35).contains(&stopped), "{stopped} of {all}");
     }
 }

@@ -11,6 +11,7 @@ pub mod nominal;
 pub mod picture;
 pub mod pins;
 pub mod plan;
+pub mod push;
 pub mod rewrite;
 pub mod seat;
 pub mod tune;

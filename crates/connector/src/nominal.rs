@@ -1,10 +1,10 @@
-//! Explanation of the trial at the nominal start.
+//! Explanation of the trial at the nominal start, and a warning of a weak grip.
 
 use super::body::ConvexBody;
-use super::seat;
 use input::units::{DEG, MM};
 use insertion::outcome::STOP_REMEDY;
 use insertion::trial::PhaseEnd;
+use insertion::trial::cell::GRAVITY;
 use insertion::{FailureClass, Outcome, Stage, Task, Trial};
 
 /// Explains the outcome of a trial in plain words, with advice.
@@ -42,19 +42,44 @@ pub fn explain(task: &Task, trial: &Trial) -> String {
     }
 }
 
+/// Returns the ends of the search phases of a trial.
+fn search<'a>(task: &'a Task, trial: &'a Trial) -> impl Iterator<Item = &'a PhaseEnd> {
+    let phases = &task.strategy.phases;
+    let of_search = |end: &&PhaseEnd| {
+        phases.iter().any(|phase| phase.name == end.name && phase.stage == Stage::Search)
+    };
+    trial.phases.iter().filter(of_search)
+}
+
+/// Returns a warning if the friction of the pads is less than the weight of the plug, or than its friction on the rim in
+/// the search of this trial. The roofs transmit the mating force.
+pub fn weak_grip(task: &Task, trial: &Trial) -> Option<String> {
+    let pressed = search(task, trial).map(|phase| phase.peak_force_n).fold(0.0, f64::max);
+    let loads = [
+        (task.plug.mass * GRAVITY, "weight of the plug"),
+        (task.friction.plug_socket * pressed, "friction of the plug on the rim"),
+    ];
+    let (load, name) = loads.into_iter().max_by(|a, b| a.0.total_cmp(&b.0))?;
+    let per_newton = 2.0 * task.friction.finger_plug;
+    let (force, least) = (task.grip.force, (10.0 * load / per_newton).ceil() / 10.0);
+    (per_newton * force < load).then(|| {
+        format!(
+            "grip.force_n: with {force} N the friction of the two pads is {:.2} N, less than {load:.2} N, \
+             the {name}; give at least {least:.1} N",
+            per_newton * force
+        )
+    })
+}
+
 /// Explains why the plug missed the opening.
 fn missed(task: &Task, trial: &Trial) -> String {
     let plug = ConvexBody::plug(&task.plug);
-    let commanded = seat::waypoints(task, &plug);
-    let in_search = |phase: &&PhaseEnd| {
-        commanded.iter().any(|p| p.name == phase.name && p.stage == Stage::Search)
-    };
     // Lowest point of the tip at the end of each search phase, mm.
     let lowest = |phase: &PhaseEnd| {
         let edge = plug.lowest(&phase.poses.plug)?;
         Some((phase.name.clone(), edge.coords / MM))
     };
-    let edges: Vec<_> = trial.phases.iter().filter(in_search).filter_map(lowest).collect();
+    let edges: Vec<_> = search(task, trial).filter_map(lowest).collect();
     let [low, high] = task.opening[1].map(|y| y / MM);
     let Some((name, edge)) = edges.last() else {
         return "the plug never entered the opening".to_owned();

@@ -53,8 +53,7 @@ pub fn stop_words(robot_stopped: bool) -> &'static str {
 }
 
 /// Advice on a protective stop of the robot, without a full stop.
-pub const STOP_REMEDY: &str =
-    "Lower the speed or the preload of the task's phases, or use a robot with higher limits";
+pub const STOP_REMEDY: &str = "Shorten the push, lower the speed or the preload of the task's phases, or use a robot with higher limits";
 
 impl From<FailureClass> for u8 {
     fn from(class: FailureClass) -> u8 {

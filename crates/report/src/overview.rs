@@ -23,7 +23,7 @@ pub(super) fn screen(answer: &Answer, files: &PageFiles) -> Markup {
     html! {
         header {
             p.muted { (lines::searched(answer)) }
-            @for (name, text) in lines::first(answer) { p.warn { b { (name) } " " (text) "." } }
+            @if let Some((name, text)) = lines::first(answer) { p.warn { b { (name) } " " (text) "." } }
             h1 { (answer.headline()) }
             p.lead {
                 (explained(&expectation(answer))) ". "

@@ -4,6 +4,7 @@ use finray::printed::PrintedFinger;
 use input::shipped::{FINGERS, ROBOTS, STIFFNESS};
 use input::units::N_PER_MM;
 use insertion::evaluation::tolerance::evaluate;
+use insertion::outcome::STOP_REMEDY;
 use insertion::stiffness::parse;
 use insertion::surrogate::{Model, fit};
 use insertion::tests::fake::{Altered, FakeRig};
@@ -194,25 +195,32 @@ fn a_measured_design_shows_its_range_on_a_robot() {
 }
 
 #[test]
-fn stops_that_end_most_trials_precede_the_range() {
+fn stops_that_end_most_trials_are_the_headline() {
     let mut study = record(vec![walked(0, [20.0, 20.0])]);
     let trials = study.evaluations[0].tasks[0].trials;
-    let text = |stops: u32| {
-        format!("robot stop in {stops} of {trials} trials: a plug seated by then is inserted")
-    };
-    for (stops, first) in [(trials / 2, false), (trials / 2 + 1, true)] {
+    for (stops, most) in [(trials / 2, false), (trials / 2 + 1, true)] {
         study.evaluations[0].tasks[0].robot_stops = stops;
         let answer = crate::answer::Answer::of(&study);
-        let (above, below) =
-            (crate::answer::lines::first(&answer), crate::answer::lines::brief(&answer));
-        let place = |lines: &[(String, String)]| {
-            lines.iter().filter(|(_, line)| line.contains(&text(stops))).count()
-        };
-        assert_eq!([place(&above), place(&below)], [usize::from(first), usize::from(!first)]);
-        let page = html(&study);
-        let page = page.split_once("<h1>").map(|(before, _)| before.contains(&text(stops)));
-        assert_eq!(page, Some(first));
+        let (headline, lines) = (answer.headline(), crate::answer::lines::brief(&answer));
+        let first = format!("Not usable as it is: the robot stops in {stops} of {trials} trials; ");
+        assert_eq!(headline.starts_with(&first), most, "{headline}");
+        assert_eq!(answer.verdict_key() == "robot_stops", most);
+        let with = |words: &str| lines.iter().filter(|(_, line)| line.contains(words)).count();
+        let ends = format!("robot stop in {stops} of {trials} trials: a plug seated by then is ");
+        assert_eq!([with(&ends), with(STOP_REMEDY)], [usize::from(!most), usize::from(most)]);
+        let (command, _) = crate::answer::command::next(&answer, Path::new("study"));
+        let evaluate = command.starts_with("optimize evaluate --task ")
+            && command.ends_with(" --density 20 --direction 20");
+        assert_eq!(evaluate, most, "{command}");
+        assert!(html(&study).contains(&format!("<h1>{headline}</h1>")));
     }
+    study.config.tasks.push("usb".to_owned());
+    let mut second = study.evaluations[0].tasks[0].clone();
+    (study.evaluations[0].tasks[0].robot_stops, second.robot_stops) = (0, trials);
+    study.evaluations[0].tasks.push(second);
+    let headline = crate::answer::Answer::of(&study).headline();
+    let named = format!("the robot stops in {trials} of {trials} trials on usb; best finger: 20 %");
+    assert!(headline.contains(&named), "{headline}");
 }
 
 #[test]

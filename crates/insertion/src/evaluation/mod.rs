@@ -149,6 +149,11 @@ impl Evaluation {
     pub fn nominal_stop(&self) -> bool {
         self.window.nominal != Outcome::Inserted && self.robot_stops > 0
     }
+
+    /// Returns whether a protective stop of the robot ended most trials, although the nominal start inserts.
+    pub fn mostly_stopped(&self) -> bool {
+        self.window.nominal == Outcome::Inserted && self.robot_stops > self.trials / 2
+    }
 }
 
 fn is_zero(count: &u32) -> bool {

@@ -13,6 +13,9 @@ use contact::scene::{
 use input::units::MM;
 use nalgebra::{Matrix6, Point3, Translation3, UnitQuaternion, Vector3};
 
+/// Acceleration of gravity, m/s2.
+pub const GRAVITY: f64 = 9.81;
+
 /// Height of the pick-up pose above the start pose, m.
 const PICK_UP_HEIGHT: f64 = 10.0 * MM;
 /// Gap between each pad and the plug before the grasp, m.
@@ -68,7 +71,7 @@ pub struct Hand {
 
 /// Builds the scene for one pair of fingers; the jaws are open.
 pub fn build(task: &Task, robot: &MountedRobot, finger: &Finger) -> WorkCell {
-    let mut scene = Scene { gravity: Vector3::new(0.0, 0.0, -9.81), ..Scene::default() };
+    let mut scene = Scene { gravity: Vector3::new(0.0, 0.0, -GRAVITY), ..Scene::default() };
     let [x, y, z] = task.strategy.start;
     let tcp = Pose::translation(x, y, z + PICK_UP_HEIGHT);
     let plug_pose = tcp * Pose::translation(0.0, 0.0, -task.grip.tcp_z);

@@ -8,6 +8,7 @@ use input::shipped::{
 };
 use insertion::evaluation::INDIFFERENCE_MM;
 use insertion::trial::engine::EngineKind;
+use insertion::{DENSITY_KEY, DIRECTION_KEY};
 use std::path::Path;
 use study::{CELL, FINGER, StudyRecord, input_path, sha256_hex};
 
@@ -67,6 +68,9 @@ pub fn next(answer: &Answer, dir: &Path) -> (String, &'static str) {
     let several = answer.record.config.several_tasks();
     // Measurements refer to the name of the user's file, not to that of its copy.
     let task = inputs.own_file(0).unwrap_or_else(|| inputs.input("task_1", TASKS));
+    if let Some(command) = evaluate(answer, &inputs) {
+        return (command, "compute a push with which the robot does not stop");
+    }
     match (&answer.verdict, &answer.trust) {
         (Verdict::NothingInserts { place, .. }, _) => repair(answer.record, dir, *place),
         (Verdict::NoneFeasible, _) => (
@@ -96,6 +100,20 @@ pub fn next(answer: &Answer, dir: &Path) -> (String, &'static str) {
             (setup.join(" "), why)
         }
     }
+}
+
+/// Returns the command that evaluates the finger on the first task on which the robot stops in most trials; `None` if
+/// there is none.
+fn evaluate(answer: &Answer, inputs: &InputArguments) -> Option<String> {
+    let (place, _) = answer.stopped()?;
+    let task = inputs.input(&format!("task_{}", place + 1), TASKS);
+    let of_finger = answer.verdict.finger()?.0.iter().map(|(key, value)| match key.as_str() {
+        DENSITY_KEY => format!("--density {value}"),
+        DIRECTION_KEY => format!("--direction {value}"),
+        _ => format!("--set {key}={value}"),
+    });
+    let words = inputs.changed_setup().into_iter().chain(of_finger);
+    Some(words.fold(format!("optimize evaluate --task {task}"), |all, word| all + " " + &word))
 }
 
 /// Returns the command for the task with index `place`, whose nominal start fails, and the command's purpose. It

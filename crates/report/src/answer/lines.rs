@@ -5,7 +5,7 @@ use super::{Answer, Front, OnTask, Recommended, Spread, Ties, Verdict};
 use ask_tell::statistics::mean;
 use calibration::rank_correlation::{Order, RankCorrelation};
 use insertion::evaluation::robustness::firm::REPEATS;
-use insertion::outcome::stop_words;
+use insertion::outcome::{STOP_REMEDY, stop_words};
 use insertion::{Design, Evaluation, Measure, Outcome, Prediction, Robot, Variable, grid_mm};
 use parameters::label;
 use std::iter;
@@ -122,7 +122,7 @@ fn members(record: &StudyRecord, front: &Front) -> Vec<Line> {
 /// Largest number of designs of a front that are listed.
 const MEMBERS: usize = 4;
 
-/// Returns advice on the start and warnings to read before the finger is printed.
+/// Returns advice on robot stops and on the start, and warnings to read before the finger is printed.
 pub fn caveats(answer: &Answer) -> Vec<Line> {
     let found = simulated_finger(answer);
     let advice = found.and_then(|found| found.start.as_ref()?.advice.as_deref());
@@ -136,18 +136,15 @@ pub fn caveats(answer: &Answer) -> Vec<Line> {
     });
     let robot = answer.record.limits.robot.as_ref().and_then(Robot::remark);
     let robot = robot.map(|text| line("warning", text));
-    advice.into_iter().chain(extrapolated).chain(warnings).chain(robot).collect()
+    let stops = answer.stopped().map(|_| line("warning", STOP_REMEDY));
+    stops.into_iter().chain(advice).chain(extrapolated).chain(warnings).chain(robot).collect()
 }
 
-/// Returns the warnings that precede the recommendation: a contact force above a limit, and protective stops of the robot
-/// that end most trials.
-pub fn first(answer: &Answer) -> Vec<Line> {
-    // Those of the line of the ends, if there is one.
-    let tasks: Vec<&Evaluation> = match simulated_finger(answer) {
-        Some(found) => found.tasks.iter().map(|task| task.measured).collect(),
-        None => answer.finger_and_evaluations().map_or(Vec::new(), |(_, tasks)| tasks),
-    };
-    force(answer).into_iter().chain(tasks.into_iter().filter_map(most_stops)).collect()
+/// Returns the warning that precedes the recommendation: a contact force above a limit, unless the headline names it as
+/// the cause of robot stops.
+pub fn first(answer: &Answer) -> Option<Line> {
+    let stops = answer.stopped().is_some() && !answer.force.as_ref()?.of_connector;
+    force(answer).filter(|_| !stops)
 }
 
 /// Returns a contact force above the limit of connector or robot, with a remedy.
@@ -357,21 +354,15 @@ pub fn window(evaluation: &Evaluation) -> Vec<Line> {
     ]
 }
 
-/// Returns a warning if a protective stop of the robot ended most trials, for the place before the range.
-pub fn most_stops(evaluation: &Evaluation) -> Option<Line> {
-    let most = evaluation.robot_stops > evaluation.trials / 2;
-    most.then(|| line("warning", stops(evaluation)))
-}
-
 /// Returns `; ` and the number of trials that a protective stop of the robot ended, for the line of the ends; empty if
-/// there are none, or if [`most_stops`] has it.
-fn some_stops(evaluation: &Evaluation) -> String {
-    let some = (1..=evaluation.trials / 2).contains(&evaluation.robot_stops);
-    if some { format!("; {}", stops(evaluation)) } else { String::new() }
-}
-
-fn stops(Evaluation { robot_stops, trials, .. }: &Evaluation) -> String {
-    format!("robot stop in {robot_stops} of {trials} trials: a plug seated by then is inserted")
+/// there are none, or if they end most trials, as the headline says.
+fn some_stops(Evaluation { robot_stops, trials, .. }: &Evaluation) -> String {
+    match (1..=trials / 2).contains(robot_stops) {
+        true => format!(
+            "; robot stop in {robot_stops} of {trials} trials: a plug seated by then is inserted"
+        ),
+        false => String::new(),
+    }
 }
 
 /// Returns the predicted stiffness, its uncertainty, and whether it is an extrapolation.

@@ -106,13 +106,34 @@ impl<'a> Answer<'a> {
             true => " (confirmation incomplete)".to_owned(),
             false => format!(" (unfinished, after {})", config.counted(evaluations.len())),
         };
-        self.simulated().unwrap_or_else(|| self.verdict.headline())
+        let found = self.not_usable().or_else(|| self.simulated());
+        found.unwrap_or_else(|| self.verdict.headline())
             + &self.record.unfinished().then(done).unwrap_or_default()
     }
 
     /// Returns the name of the verdict in JSON.
     pub fn verdict_key(&self) -> &'static str {
-        if self.simulated().is_some() { "simulated" } else { self.verdict.key() }
+        match (self.stopped(), self.simulated()) {
+            (Some(_), _) => "robot_stops",
+            (None, Some(_)) => "simulated",
+            (None, None) => self.verdict.key(),
+        }
+    }
+
+    /// Returns the index of the first task on which the robot stops in most trials of the finger to print, and the
+    /// evaluation on it; `None` if there is none.
+    pub fn stopped(&self) -> Option<(usize, &'a Evaluation)> {
+        let (_, tasks) = self.finger_and_evaluations()?;
+        tasks.into_iter().enumerate().find(|(_, found)| found.mostly_stopped())
+    }
+
+    /// Returns the headline of a finger with which the robot stops in most trials.
+    fn not_usable(&self) -> Option<String> {
+        let (place, found) = self.stopped()?;
+        let config = &self.record.config;
+        let on = words::on(config, config.tasks().nth(place).unwrap_or_default());
+        let finger = words::design(self.verdict.finger()?);
+        Some(format!("{}; best finger: {finger}", words::not_usable(found, &on)))
     }
 
     /// Returns the headline of a finger that no measurement supports: of its task there are none, or a range is optimized,

@@ -4,8 +4,8 @@ use input::units::N_PER_MM;
 use insertion::evaluation::{RobustRange, SuccessRate};
 use insertion::outcome::STOP_REMEDY;
 use insertion::{
-    DENSITY_KEY, DIRECTION_KEY, Design, Estimate, FailureClass, Measure, Objectives, Outcome,
-    Window,
+    DENSITY_KEY, DIRECTION_KEY, Design, Estimate, Evaluation, FailureClass, Measure, Objectives,
+    Outcome, Window,
 };
 use study::{Recorded, StudyConfig, StudyRecord};
 
@@ -91,6 +91,11 @@ pub fn remedy(nominal: Outcome, robot_stopped: bool) -> &'static str {
         true => STOP_REMEDY,
         false => REMEDIES[usize::from(nominal.failure().unwrap_or(0))],
     }
+}
+
+/// Returns the headline of a finger with which the robot stops in most trials; `on` is ` on ` and the task, or empty.
+pub fn not_usable(Evaluation { robot_stops, trials, .. }: &Evaluation, on: &str) -> String {
+    format!("Not usable as it is: the robot stops in {robot_stops} of {trials} trials{on}")
 }
 
 /// Returns the outcome beyond an end of a window, in words; `None` if the search ended without a failure.

@@ -143,6 +143,8 @@ class Answer(Result):
     verdict: Literal["print", "any", "simulated", "measured_before", "choose", "nothing_inserts", "none_feasible"]
     headline: str
     expectation: str
+    #: The best measured finger, if measurements do not support ``finger``.
+    use_now: BestMeasured | None
     #: Values of the finger by key.
     finger: dict[str, float] | None
     force: ExcessForce | None

@@ -236,7 +236,7 @@ fn without_measurements_no_print_is_recommended_by_headline_json_and_page() {
     let mut alike = record(vec![walked(0, [12.0, 20.0]), walked(1, [20.0, 20.0])]);
     alike.config.tasks = vec!["mine".to_owned()];
     assert!(
-        headline(&alike).starts_with("2 fingers tie within the simulation error, not meas")
+        headline(&alike).starts_with("2 fingers differ by less than the simulation error, not ")
     );
     alike.config.indifference_mm = 1.0;
     assert!(headline(&alike).starts_with("2 fingers tie in simulation, not measured yet: "));

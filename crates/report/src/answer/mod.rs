@@ -135,7 +135,7 @@ impl<'a> Answer<'a> {
         let found = match (&self.verdict, self.within_error()) {
             (Verdict::Any { of, .. }, _) => format!("{of} fingers tie in simulation"),
             (Verdict::Print(_), Some(of)) => {
-                format!("{of} fingers tie within the simulation error")
+                format!("{of} fingers differ by less than the simulation error")
             }
             (Verdict::Print(_) | Verdict::Choose { of: 1, .. }, _) => {
                 "Best in simulation".to_owned()

@@ -59,7 +59,7 @@ alone --version
 read -r _ first < <(block "optimize --task usb")
 # shellcheck disable=SC2086
 alone $first > "$scratch/first.txt" 2> "$scratch/first.log"
-diff <(block "Best in simulation") "$scratch/first.txt" || failed "the output of README's first study differs"
+diff <(block "Use 30 %") "$scratch/first.txt" || failed "the output of README's first study differs"
 echo "static program in an empty root: optimize $first prints README's block"
 static() { (cd "$scratch/alone" && alone "$@") && mv "$scratch/alone/static" "$scratch"; }
 study static static

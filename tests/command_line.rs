@@ -138,9 +138,13 @@ fn a_force_that_the_connector_does_not_withstand_comes_first() {
         studies.study("weak", 30, &["--task", &studies.word("weak.toml"), "--json"]).json();
     assert_eq!(answer["answer"]["force"]["limit_n"], 6.5);
     assert_eq!(answer["answer"]["verdict"], "simulated");
+    let best = &answer["answer"]["use_now"];
+    assert_eq!([&best["range_mm"], &best["values"]["infill_density_percent"]], [6.1, 30.0]);
     assert!(studies.read("weak/report.html").contains("<b>force</b> up to"));
     let strong = study("strong", 60.0);
-    assert!(strong.lines().next().unwrap().contains("not supported by measurements"), "{strong}");
+    let best = "Use 30 % infill at 20° now: the best of 11 measured fingers, 6.1 mm on a robot\n";
+    assert!(strong.starts_with(best), "{strong}");
+    assert!(strong.lines().nth(1).unwrap().contains("not supported by measurements"), "{strong}");
     // A robot that stops near that force.
     let robot =
         include_str!("../robots/servo.toml").replace("stop_force_n = 150.0", "stop_force_n = 7.0");

@@ -122,6 +122,16 @@ class NextStep(Result):
 
 
 @dataclass(frozen=True, repr=False)
+class BestMeasured(Result):
+    """Finger with the largest measured range, of ``fingers`` in number; ``range_mm`` may be ``at_least`` its range."""
+
+    values: dict[str, float]
+    range_mm: float
+    at_least: bool
+    fingers: int
+
+
+@dataclass(frozen=True, repr=False)
 class Answer(Result):
     """Recommended action, as ``answer`` of ``--json``.
 
@@ -134,6 +144,8 @@ class Answer(Result):
                      "robot_stops"]
     headline: str
     expectation: str
+    #: The best measured finger, if measurements do not support ``finger``.
+    use_now: BestMeasured | None
     #: Values of the finger by key.
     finger: dict[str, float] | None
     force: ExcessForce | None

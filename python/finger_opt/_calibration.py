@@ -8,6 +8,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from ._answer import BestMeasured
 from ._call import called, checked, given, without
 from ._result import REST, Found, Result
 from ._words import Numbers, StrPath
@@ -235,6 +236,8 @@ class Print(Result):
     low_mm: float
     high_mm: float
     expected_gain_mm: float
+    #: Probability that its range is larger than that of the best measured finger, 0 to 1.
+    probability_better: float | None
     needs_print: bool
     reason: str
 
@@ -265,6 +268,8 @@ class Advice(Result):
     stopped_simulations: int
     simulations: int
     measurements_missing: bool
+    #: The best measured finger.
+    use_now: BestMeasured | None
     best_known_mm: float | None
     next: tuple[Print, ...]
     choice: Choice | None

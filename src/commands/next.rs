@@ -9,12 +9,13 @@ use crate::{Context, Failure, Output, command};
 use ask_tell::stream::stream;
 use calibration::bench::Settings;
 use calibration::calibrate::leave_one_out;
-use calibration::next::{Advice, Fingers, advise};
+use calibration::next::{Advice, BestMeasured, Choice, Fingers, Print, advise};
+use calibration::verdict::coverage;
 use input::shipped::Source;
 use insertion::Design;
 use insertion::outcome::STOP_REMEDY;
 use insertion::stiffness::designs;
-use report::answer::words::design;
+use report::answer::words::{design, use_now};
 use serde::Serialize;
 
 /// Fingers that may be printed.
@@ -141,10 +142,27 @@ fn interval(expected_mm: f64, low_mm: f64, high_mm: f64) -> String {
     format!("{expected_mm:.1} mm (80 %: {low_mm:.1} to {high_mm:.1})")
 }
 
+/// Returns a recommended print as text; `verb` is that of a finger that has to be printed.
+fn print(print: &Print, verb: &str, when: &str) -> String {
+    let (finger, gain) = (design(&print.design), print.expected_gain_mm);
+    let (verb, printed) = match print.needs_print {
+        true => (verb, ""),
+        false => ("Measure", "   no print: this finger was printed; set the other numbers\n"),
+    };
+    let better = print.probability_better.map_or(String::new(), |probability| {
+        let percent = 100.0 * probability;
+        format!("; {percent:.0} % likely to be wider than the best measured, else keep that")
+    });
+    let expected = interval(print.expected_mm, print.low_mm, print.high_mm);
+    format!(
+        "{verb} {finger}{when}: expected gain {gain:.2} mm{better}\n{printed}   expected {expected}: {}\n",
+        print.reason
+    )
+}
+
 impl Advised {
     fn text(&self, measurements: &str, print_cost_mm: f64) -> String {
-        let Advised { task, measured, measurements_missing, advice, loo_designs, .. } = self;
-        let file = measurements_missing.then(|| format!(" ({measurements} does not exist)"));
+        let Advised { task, advice, loo_designs, loo_inside, .. } = self;
         let [stopped, of] = [self.stopped_simulations, self.simulations];
         let not_usable = (stopped > of / 2).then(|| {
             format!(
@@ -153,49 +171,48 @@ impl Advised {
             )
         });
         let mut text = not_usable.unwrap_or_default();
-        text += &match advice.best_known_mm {
-            Some(best) => {
-                let measured = input::counted(*measured, "finger");
-                format!("{task}: {measured} measured, the best of them expected at {best:.1} mm\n")
-            }
+        text += &match &advice.use_now {
+            Some(best) => format!("{}\n", use_now(best)),
             None => {
-                let file = file.unwrap_or_default();
-                format!("{task}: nothing measured yet{file}; by simulation alone\n")
+                let missing = format!(" ({measurements} does not exist)");
+                let file = if self.measurements_missing { missing } else { String::new() };
+                format!("No finger to use yet: none measured on {task}{file}\n")
             }
         };
+        if advice.stop {
+            text += &format!("Stop printing: no print is expected to gain {print_cost_mm} mm\n");
+        }
+        for (place, next) in advice.next.iter().enumerate() {
+            text += &match (place, advice.stop) {
+                (0, false) => print(next, "Print", " next"),
+                (0, true) => print(next, "Otherwise print", ""),
+                _ => print(next, "Then print", ""),
+            };
+        }
+        text += &self.wider(print_cost_mm);
         if *loo_designs > 0 {
-            text += &format!(
-                "predicted without their own measurement, {} of {loo_designs} are in their 80 % interval\n",
-                self.loo_inside
-            );
+            let coverage = coverage(*loo_inside, *loo_designs);
+            text += &format!("predicted without their own measurement: {coverage}\n");
         }
         if !self.not_measurable.is_empty() {
             let fingers = self.not_measurable.iter().map(design).collect::<Vec<_>>().join("; ");
             text += &format!("printed, not measurable: {fingers}\n");
         }
-        for (number, print) in (1..).zip(&advice.next) {
-            let finger = design(&print.design);
-            let expected = interval(print.expected_mm, print.low_mm, print.high_mm);
-            text += &format!("{number}. {finger}\n   expected {expected}: {}\n", print.reason);
-            if !print.needs_print {
-                text +=
-                    "   no print: this finger was printed; set the other numbers and measure it\n";
-            }
-            let gain = print.expected_gain_mm;
-            text +=
-                &format!("   expected improvement of the finger chosen afterwards: {gain:.2} mm\n");
-        }
-        if advice.stop {
-            text += &format!("stop: no print is worth more than {print_cost_mm} mm\n");
-        }
-        if let Some(choice) = advice.choice.as_ref().filter(|_| advice.stop || *measured > 0) {
-            let known = if choice.measured { "measured" } else { "not measured" };
-            text += &format!(
-                "without a further print choose {}: expected {}, {known}\n",
-                design(&choice.design),
-                interval(choice.expected_mm, choice.low_mm, choice.high_mm)
-            );
-        }
         text
+    }
+
+    /// Returns the finger with the largest expected range as text if printing stops, unless it is measured, listed, or not
+    /// expected to be wider than the best measured one by the cost of a print.
+    fn wider(&self, print_cost_mm: f64) -> String {
+        let Advice { choice, use_now, next, stop, .. } = &self.advice;
+        let wider = |found: &&Choice| {
+            let is_first = next.first().is_some_and(|first| first.design == found.design);
+            let by = |best: &BestMeasured| found.expected_mm - best.range_mm >= print_cost_mm;
+            *stop && !found.measured && !is_first && use_now.as_ref().is_none_or(by)
+        };
+        choice.as_ref().filter(wider).map_or(String::new(), |found| {
+            let expected = interval(found.expected_mm, found.low_mm, found.high_mm);
+            format!("largest expected range: {}, {expected}, not measured\n", design(&found.design))
+        })
     }
 }

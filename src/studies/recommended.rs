@@ -132,6 +132,7 @@ pub fn advice(answer: &Answer, dir: &Path) -> Value {
         "verdict": answer.verdict_key(),
         "headline": answer.headline(),
         "expectation": expectation(answer),
+        "use_now": answer.use_now(),
         "finger": answer.verdict.finger(),
         "force": force(answer),
         "trust": trust(&answer.trust),

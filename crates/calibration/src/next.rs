@@ -29,6 +29,8 @@ pub struct Print {
     pub high_mm: f64,
     /// Expected increase of the largest expected range of all fingers by measuring this one, mm.
     pub expected_gain_mm: f64,
+    /// Probability that its range is larger than that of the best measured finger; `None` if none was measured.
+    pub probability_better: Option<f64>,
     /// Whether the finger has to be printed; otherwise it exists, and only the strategy is new.
     pub needs_print: bool,
     pub reason: String,
@@ -48,9 +50,24 @@ pub struct Choice {
     pub measured: bool,
 }
 
+/// Finger with the largest measured range; the fields are the keys of `--json`.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct BestMeasured {
+    #[serde(rename = "values")]
+    pub design: Design,
+    /// Its measured range, mm: the mean of its measurements.
+    pub range_mm: f64,
+    /// Whether the range is only a lower bound.
+    pub at_least: bool,
+    /// Number of fingers with a measured range.
+    pub fingers: usize,
+}
+
 /// Recommended prints; the fields are the keys of `--json`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Advice {
+    /// The finger to use now; `None` if none was measured.
+    pub use_now: Option<BestMeasured>,
     /// Expected range of the best measured finger, mm; `None` if none was measured.
     pub best_known_mm: Option<f64>,
     pub next: Vec<Print>,
@@ -108,6 +125,8 @@ pub fn advise(
         columns.iter().rev().copied().max_by(|&a, &b| expected[a][0].total_cmp(&expected[b][0]))
     };
     let best_known_mm = best(&printed[..measured.len()]).map(|column| expected[column][0]);
+    let in_use = best_measured(bench, &all[..measured.len()]);
+    let in_use_mm = in_use.map(|(column, ..)| expected[column][0]);
     let insert = (0..measured.len()).chain(known.len()..all.len());
     let choice = best(&insert.collect::<Vec<_>>()).map(|column| {
         let ([mean_mm, low_mm, high_mm], design) = (expected[column], designs[all[column]].clone());
@@ -133,7 +152,7 @@ pub fn advise(
             Some(widest) if tried.is_empty() && widest.design != design => {
                 "its range is the most informative about the others".to_owned()
             }
-            _ => reason(bench.places[all[column]], &tried, expected_mm, high_mm, best_known_mm),
+            _ => reason(bench.places[all[column]], &tried, expected_mm, high_mm, in_use_mm),
         };
         next.push(Print {
             design,
@@ -141,13 +160,28 @@ pub fn advise(
             low_mm,
             high_mm,
             expected_gain_mm: choice_mm,
+            probability_better: in_use.map(|(best, ..)| given.probability_above(column, best)),
             needs_print: needs_print(column),
             reason,
         });
         ranges.condition(column);
         printed.push(column);
     }
-    Advice { best_known_mm, next, choice, stop }
+    let use_now = in_use.map(|(column, range_mm, at_least)| {
+        let design = designs[all[column]].clone();
+        BestMeasured { design, range_mm, at_least, fingers: measured.len() }
+    });
+    Advice { use_now, best_known_mm, next, choice, stop }
+}
+
+/// Returns the place of the finger with the largest measured range, that range, mm, and whether it is only a lower bound.
+fn best_measured(bench: &Bench<'_>, fingers: &[usize]) -> Option<(usize, f64, bool)> {
+    let measured = |(place, &finger): (usize, &usize)| {
+        let own = || bench.observations.iter().filter(|one| one.finger == finger);
+        let range_mm = mean(own().map(|one| one.range_mm))?;
+        Some((place, range_mm, own().any(|one| one.at_least)))
+    };
+    fingers.iter().enumerate().filter_map(measured).max_by(|a, b| a.1.total_cmp(&b.1))
 }
 
 /// Joint distribution of the fingers' true ranges, mm.
@@ -185,6 +219,13 @@ impl Ranges {
         let values = sorted(self.deviations.iter().map(|draw| mean + draw[column]));
         let tail = |level: f64| quantile(&values, level).unwrap_or(0.0).max(0.0);
         [mean, tail((1.0 - INTERVAL) / 2.0), tail((1.0 + INTERVAL) / 2.0)]
+    }
+
+    /// Returns the probability that the range of a finger is larger than that of another.
+    fn probability_above(&self, column: usize, other: usize) -> f64 {
+        let by = self.means[column] - self.means[other];
+        let above = |draw: &Vec<f64>| f64::from(by + draw[column] > draw[other]);
+        mean(self.deviations.iter().map(above)).unwrap_or(0.0)
     }
 
     /// Returns the increase of each finger's mean by a measurement one standard deviation above its own mean.
@@ -362,6 +403,9 @@ mod tests {
             gains.iter().find(|gain| gain.column == column).map_or(0.0, |gain| gain.choice_mm)
         };
         assert!(value(&gains, 3) > 1.5 * value(&gains, 1), "{}", value(&gains, 1));
+        // Of joint ranges: finger 1 is above 2 for any x > 0, finger 3 for x > 2.
+        let above = |column| ranges.probability_above(column, 2);
+        assert!((above(1) - 0.5).abs() < 0.03 && (above(3) - 0.023).abs() < 0.01, "{}", above(3));
         // Once finger 3 is measured, the others are worth little.
         let variance = ranges.variance(1);
         ranges.condition(3);

@@ -11,6 +11,14 @@ const MISSED: f64 = 50.0;
 /// Rank correlation of the leave-one-out predictions below which the order is not predictable.
 const ORDERED: f64 = 0.3;
 
+/// Returns how many intervals contain the measured range, in words.
+pub fn coverage(inside: usize, fingers: usize) -> String {
+    match fingers {
+        ..ENOUGH => format!("{}, too few to judge the 80 % intervals", counted(fingers, "finger")),
+        _ => format!("{inside} of {fingers} in their 80 % interval"),
+    }
+}
+
 /// Verdict on the predictions for a task.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Verdict {
@@ -65,6 +73,13 @@ mod tests {
             emulator_error_mm: 0.1,
         };
         Verdict::of(&accuracy, others)
+    }
+
+    #[test]
+    fn intervals_of_fewer_than_five_fingers_are_not_judged() {
+        assert_eq!(coverage(1, 1), "1 finger, too few to judge the 80 % intervals");
+        assert_eq!(coverage(4, 4), "4 fingers, too few to judge the 80 % intervals");
+        assert_eq!(coverage(4, 5), "4 of 5 in their 80 % interval");
     }
 
     #[test]

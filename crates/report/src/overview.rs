@@ -66,8 +66,11 @@ const COLOURS: [(&str, &str); 7] = [
 fn drawing_and_files(answer: &Answer, files: &PageFiles) -> Option<Markup> {
     let geometry = recommended(answer)?;
     let finger = answer.verdict.finger()?;
-    let first = answer.record.config.objective.first().name();
-    let best = answer.front.as_ref().map_or(String::new(), |_| format!(", best in {first}"));
+    let best = match (&answer.front, answer.use_now()) {
+        (Some(_), _) => format!(", best in {}", answer.record.config.objective.first().name()),
+        (None, Some(_)) => ", best in simulation".to_owned(),
+        (None, None) => String::new(),
+    };
     let caption = format!("{}{best}, {} ribs", design(finger), geometry.ribs);
     let svg = sheet::part(&geometry);
     let svg = COLOURS.iter().fold(svg, |svg, (from, to)| svg.replace(from, to));

@@ -126,7 +126,7 @@ fn the_page_is_whole_and_its_numbers_are_the_records() {
     let best = study.best().unwrap();
     let window = &best.tasks[0].window;
     for number in [
-        format!("not supported by measurements: {}</h1>", words::design(&best.design)),
+        format!("not supported by measurements: {}; ", words::design(&best.design)),
         format!("simulated: {} mm, not confirmed", words::span(words::ends_mm(window))),
         format!("compliance {:.2} ± ", best.stiffness.compliance.mean / N_PER_MM),
         words::mm(window.range_mm()),
@@ -149,7 +149,7 @@ fn an_unfinished_study_is_told_and_continued() {
     let mut study = study();
     let told = |study: &StudyRecord| {
         let html = whole(study);
-        let told = html.contains(" (unfinished, after 60 of 200 evaluations)</h1>");
+        let told = html.contains(" (unfinished, after 60 of 200 evaluations); simulated");
         assert_eq!(html.contains("<pre><code>optimize resume"), told);
         told
     };
@@ -184,7 +184,10 @@ fn a_measured_design_shows_its_range_on_a_robot() {
     assert!(html.contains("<td>4.1 mm</td>"));
     assert!(html.contains("Measured: best 30 % infill at 20°: 6.1 mm (model"));
     assert!(html.contains("ranks 11 fingers no better than chance (Spearman -0.07)"));
-    assert!(html.contains("<h1>Best in simulation, not supported by measurements: "));
+    let best = "30 % infill at 20° now: the best of 11 measured fingers, 6.1 mm on a robot";
+    assert!(html.contains(&format!("<h1>Use {best}</h1>")));
+    assert!(html.contains("Best in simulation, not supported by measurements: "));
+    assert!(html.contains(", best in simulation, "));
     let best = whole(&record(vec![walked(0, [30.0, 20.0])]));
     assert!(best.contains("<h1>Print the finger with 30 % infill at 20°</h1>"));
     let (_, ranges) = html.split_once("Ranges without their ends").expect("ranges below the scale");
@@ -240,7 +243,9 @@ fn without_measurements_no_print_is_recommended_by_headline_json_and_page() {
     // 6.0 and 5.4 mm differ by more than the indifference, but less than the simulation error.
     let mut alike = record(vec![walked(0, [12.0, 20.0]), walked(1, [20.0, 20.0])]);
     alike.config.tasks = vec!["mine".to_owned()];
-    assert!(headline(&alike).starts_with("2 fingers tie within the simulation error, not meas"));
+    assert!(
+        headline(&alike).starts_with("2 fingers differ by less than the simulation error, not ")
+    );
     alike.config.indifference_mm = 1.0;
     assert!(headline(&alike).starts_with("2 fingers tie in simulation, not measured yet: "));
     // A front of one finger.
@@ -250,6 +255,7 @@ fn without_measurements_no_print_is_recommended_by_headline_json_and_page() {
     for one in &mut front.evaluations {
         one.score = goals.score(&one.tasks());
     }
+    // The other objective was not measured: no measured finger is recommended.
     assert!(headline(&front).starts_with("Best in simulation, not supported by measurements: "));
     front.evaluations[0].design = Design::infill(30.0, 20.0);
     assert!(headline(&front).ends_with(": best in all objectives"), "the best measured one");

@@ -4,6 +4,7 @@ use super::words::{self, ends_mm, evaluated, interval, mm, span};
 use super::{Answer, Front, OnTask, Recommended, Spread, Ties, Verdict};
 use ask_tell::statistics::mean;
 use calibration::rank_correlation::{Order, RankCorrelation};
+use calibration::verdict::coverage;
 use insertion::evaluation::robustness::firm::REPEATS;
 use insertion::outcome::{STOP_REMEDY, stop_words};
 use insertion::{Design, Evaluation, Measure, Outcome, Prediction, Robot, Variable, grid_mm};
@@ -60,11 +61,13 @@ pub fn measured(answer: &Answer) -> Vec<Line> {
             format!("the model ranks {fingers} fingers {order} (Spearman {spearman:+.2})");
         line("measured", format!("{best}{on} ({source} {model}); {ranking}"))
     };
-    let widest = answer.measured.iter().max_by(|(_, a), (_, b)| a.total_cmp(b));
     match (answer.verdict.finger(), &answer.record.on_bench) {
         (None, _) => Vec::new(),
         (_, None) => answer.rank_correlations.iter().map(compared).collect(),
-        (_, Some(_)) => widest.iter().map(|(of, mm)| line("measured", best(of, *mm))).collect(),
+        (_, Some(_)) => {
+            let best = answer.best_measured().map(|(of, mm)| line("measured", best(of, *mm)));
+            best.into_iter().collect()
+        }
     }
 }
 
@@ -334,7 +337,7 @@ pub fn accuracy(found: &BenchPrediction) -> Line {
         return line("measured", format!("{count} fingers"));
     };
     let rank = trust.spearman.map_or("-".to_owned(), |rank| format!("{rank:+.2}"));
-    let inside = format!("{} of {} in the 80 % interval", trust.inside, trust.fingers);
+    let inside = coverage(trust.inside, trust.fingers);
     let error = format!("leave-one-out error {deviation:.1} %, Spearman {rank}");
     line("measured", format!("{count} fingers; {error}, {inside}"))
 }

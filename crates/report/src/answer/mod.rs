@@ -12,9 +12,10 @@ mod trust;
 mod verdict;
 pub mod words;
 
+use calibration::next::BestMeasured;
 use calibration::rank_correlation::{Order, RankCorrelation, errors_percent, rank_correlation};
 use insertion::{Design, Evaluation, Measure};
-use study::{Recorded, StudyRecord, Volume, Walked, volume};
+use study::{Recorded, StudyConfig, StudyRecord, Volume, Walked, volume};
 
 pub use force::ExcessForce;
 use recommended::firm_range_mm;
@@ -99,8 +100,13 @@ impl<'a> Answer<'a> {
         answer
     }
 
-    /// Returns the first sentence of the answer, with the number of evaluations of an unfinished study.
+    /// Returns the first sentence of the answer: the measured finger to use, else the result of the search.
     pub fn headline(&self) -> String {
+        self.use_now().map_or_else(|| self.found(), |best| words::use_now(&best))
+    }
+
+    /// Returns the result of the search, with the number of evaluations of an unfinished study.
+    fn found(&self) -> String {
         let StudyRecord { config, evaluations, .. } = self.record;
         let done = || match evaluations.len() as u64 >= config.budget {
             true => " (confirmation incomplete)".to_owned(),
@@ -139,28 +145,18 @@ impl<'a> Answer<'a> {
     /// Returns the headline of a finger that no measurement supports: of its task there are none, or a range is optimized,
     /// the finger is not the best measured one, and the simulation ranks the published fingers of no task like the robot.
     fn simulated(&self) -> Option<String> {
-        let of_range = |of: &Measure| {
-            matches!(of, Measure::Range | Measure::CentredRange | Measure::RobustRange)
-        };
-        let unlike = |found: &RankCorrelation| found.order() != Order::Like;
-        let best_mm = self.measured.iter().fold(0.0, |most: f64, (_, mm)| most.max(*mm));
-        let own_mm = self.verdict.finger().and_then(|finger| self.on_robot(finger));
-        let refuted = own_mm.is_none_or(|mm| mm < best_mm)
-            && self.record.config.objective.measures().iter().any(of_range)
-            && !self.rank_correlations.is_empty()
-            && self.rank_correlations.iter().all(unlike);
         let why = match &self.trust {
             Trust::Simulated { .. } if self.record.config.tasks().nth(1).is_some() => {
                 "not measured yet on each task"
             }
             Trust::Simulated { .. } => "not measured yet",
-            Trust::Published { .. } if refuted => "not supported by measurements",
+            _ if self.is_refuted() => "not supported by measurements",
             _ => return None,
         };
         let found = match (&self.verdict, self.within_error()) {
             (Verdict::Any { of, .. }, _) => format!("{of} fingers tie in simulation"),
             (Verdict::Print(_), Some(of)) => {
-                format!("{of} fingers tie within the simulation error")
+                format!("{of} fingers differ by less than the simulation error")
             }
             (Verdict::Print(_) | Verdict::Choose { of: 1, .. }, _) => {
                 "Best in simulation".to_owned()
@@ -168,6 +164,36 @@ impl<'a> Answer<'a> {
             _ => return None,
         };
         Some(format!("{found}, {why}: {}", words::design(self.verdict.finger()?)))
+    }
+
+    /// Returns whether measurements do not support the finger of the verdict.
+    fn is_refuted(&self) -> bool {
+        let of_range = |of: &Measure| {
+            matches!(of, Measure::Range | Measure::CentredRange | Measure::RobustRange)
+        };
+        let unlike = |found: &RankCorrelation| found.order() != Order::Like;
+        let best_mm = self.best_measured().map_or(0.0, |(_, mm)| *mm);
+        let own_mm = self.verdict.finger().and_then(|finger| self.on_robot(finger));
+        matches!(self.trust, Trust::Published { .. })
+            && own_mm.is_none_or(|mm| mm < best_mm)
+            && self.record.config.objective.measures().iter().any(of_range)
+            && !self.rank_correlations.is_empty()
+            && self.rank_correlations.iter().all(unlike)
+    }
+
+    /// Returns the measured finger with the largest range.
+    fn best_measured(&self) -> Option<&MeasuredFinger> {
+        self.measured.iter().max_by(|(_, a), (_, b)| a.total_cmp(b))
+    }
+
+    /// Returns the best measured finger, if measurements do not support the best one in simulation, and only the range
+    /// matters: the published fingers have no other measured values.
+    pub fn use_now(&self) -> Option<BestMeasured> {
+        let StudyConfig { objective, constraints, .. } = &self.record.config;
+        let by_range = objective.single().is_some() && constraints.is_empty();
+        let (design, range_mm) = self.best_measured().filter(|_| by_range && self.is_refuted())?;
+        let (design, fingers) = (design.clone(), self.measured.len());
+        Some(BestMeasured { design, range_mm: *range_mm, at_least: false, fingers })
     }
 
     /// Returns the number of feasible designs that insert, if the range is optimized and their ranges differ by less than the

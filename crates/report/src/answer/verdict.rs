@@ -138,6 +138,7 @@ impl<'a> Verdict<'a> {
 }
 
 /// Returns the expected performance of the finger and the evidence for the estimate, as a sentence without a full stop.
+/// If the headline names a measured finger, the result of the search comes first.
 pub fn expectation(answer: &Answer) -> String {
     if let Some(best) = answer.record.on_bench.as_ref().and_then(|found| found.best.first()) {
         let [range, low, high] = [best.range_mm, best.low_mm, best.high_mm];
@@ -158,7 +159,9 @@ pub fn expectation(answer: &Answer) -> String {
         Some(found) => {
             let any = matches!(answer.verdict, Verdict::Any { .. });
             let each = found.ties.as_ref().filter(|_| any).and_then(|set| each(found, set));
-            format!("{}; {}", each.unwrap_or_else(|| simulated(found)), answer.trust.reason())
+            let best = answer.use_now().map_or(String::new(), |_| answer.found() + "; ");
+            let each = each.unwrap_or_else(|| simulated(found));
+            format!("{best}{each}; {}", answer.trust.reason())
         }
     }
 }

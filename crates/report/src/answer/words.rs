@@ -1,5 +1,6 @@
 //! Formatting of the designs, numbers and outcomes of answers, for terminal and page alike.
 
+use calibration::next::BestMeasured;
 use input::units::N_PER_MM;
 use insertion::evaluation::{RobustRange, SuccessRate};
 use insertion::outcome::STOP_REMEDY;
@@ -18,6 +19,17 @@ pub fn settled(record: &StudyRecord) -> String {
 /// Formats a range or another length with one decimal: `3.5 mm`.
 pub fn mm(length_mm: f64) -> String {
     Measure::Range.show(length_mm)
+}
+
+/// Returns which finger to use now: the best measured one.
+pub fn use_now(best: &BestMeasured) -> String {
+    let BestMeasured { design, range_mm, at_least, fingers } = best;
+    let more = if *at_least { " or more" } else { "" };
+    let rank = match fingers {
+        1 => "the only measured finger".to_owned(),
+        _ => format!("the best of {fingers} measured fingers"),
+    };
+    format!("Use {} now: {rank}, {}{more} on a robot", self::design(design), mm(*range_mm))
 }
 
 /// Returns an interval of lengths: `3.1 to 3.5 mm`.

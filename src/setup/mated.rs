@@ -1,7 +1,7 @@
 //! Creation of a task from the meshes of a plug and its socket, by their mated pose.
 
 use super::bodies::{PairRequest, Parts};
-use super::poses::{MatedPose, depth, insert_along, jaws_of, mate};
+use super::poses::{MatedPose, depth, insert_along, jaws_of, mate, names};
 use crate::{Context, Failure};
 use connector::body::{extent, longest_side, width};
 use connector::draft::Size;
@@ -185,7 +185,7 @@ fn check_drawing(
                  above its seat",
                 at(off.place)
             );
-            (files.join(", "), problem)
+            (names(files), problem)
         }
         (None, None) => return Ok(()),
     };
@@ -195,10 +195,12 @@ fn check_drawing(
         (Some(seat), _) => {
             format!("the plug stops {:.2} mm deep: give at most that as --depth-mm", seat / MM)
         }
-        (None, true) => format!(
-            "plug and socket overlap by up to {deepest:.2} mm in the pose that was found: if it is not the real one, give \
-             an assembly of both in the mated pose"
-        ),
+        (None, true) => {
+            let other = if files[0] == files[1] { "" } else { "give an assembly of both, or " };
+            format!(
+                "plug and socket overlap by up to {deepest:.2} mm: {other}correct the drawing if they do not when mated"
+            )
+        }
         (None, false) => {
             "look there for faces that cross one another or are turned inside out".to_owned()
         }
@@ -363,7 +365,7 @@ fn check_sizes(
             "read in {}, {sizes}; export both in one unit, or name theirs with --unit",
             value(unit)
         );
-        return Err(Failure::in_file(files.join(", "), problem));
+        return Err(Failure::in_file(names(files), problem));
     }
     context.note(&format!("{sizes}: are both in one unit?"));
     Ok(())

@@ -43,6 +43,11 @@ impl MatedPose {
     }
 }
 
+/// Returns the names of plug and socket; an assembly has one.
+pub fn names([plug, socket]: Files) -> String {
+    if plug == socket { plug.to_owned() } else { format!("{plug}, {socket}") }
+}
+
 /// Returns the requested mate and all that were found in the given direction, the best first.
 ///
 /// # Errors
@@ -59,7 +64,7 @@ pub fn mate(
         false => mates(plug, socket, context.stop),
     };
     not_stopped(context.stop)?;
-    let nowhere = |why: String| Failure::in_file(files.join(", "), why);
+    let nowhere = |why: String| Failure::in_file(names(files), why);
     let found = found.map_err(|error| {
         let fits = (error == MatingError::NoFit)
             .then(|| mirrored_fit([plug, socket], request.insert_along, context));

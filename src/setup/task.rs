@@ -209,7 +209,8 @@ impl TaskCheck {
 
     /// Returns a line for each problem and one for the nominal start.
     pub fn text(&self) -> String {
-        let mut text = String::new();
+        let about = self.task.iter().map(|task| ("task".to_owned(), task.description.clone()));
+        let mut text = lines(about);
         for Problem { key, problem, remedy } in &self.problems {
             text.push_str(&format!(
                 "problem       {key}\n              {problem}\n              right: {remedy}\n"

@@ -112,7 +112,9 @@ impl Request {
         not_stopped(context.stop)?;
         let mut task =
             mated(files, parts, &self.pair, like.as_ref().map(|like| &like.task), context)?;
-        task.made.task.description = description(&names);
+        let warnings = task.findings.iter().filter(|(what, _)| *what == "warning");
+        let about = [description(&names)].into_iter().chain(warnings.map(|(_, why)| why.clone()));
+        task.made.task.description = about.collect::<Vec<_>>().join("; ");
         Ok(task)
     }
 

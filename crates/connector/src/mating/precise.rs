@@ -33,14 +33,16 @@ struct PlayMeasurement<'a> {
     window: Window,
     /// Cells of the plug in which the parts interfere.
     interfering: Vec<[i32; 2]>,
+    /// Width of their region, m.
+    interference: f64,
     /// These cells with one and with two margins around them.
     around: [CellSet; 2],
     /// Side of these cells, m.
     step: f64,
     /// Shift of the plug in x and y, m.
     shift: [f64; 2],
-    /// Play between the walls along each axis, m; springs are left out up to it.
-    walls: [f64; 2],
+    /// Play between the walls along each axis, m, if springs hold the plug.
+    walls: Option<[f64; 2]>,
 }
 
 impl PlayMeasurement<'_> {
@@ -125,18 +127,22 @@ impl PlayMeasurement<'_> {
 
     /// Centres the plug along a lateral axis at a height, m, and returns its total play, m; it is measured up to
     /// `max_play` to either side. A spring on one side, which the plug overlaps in its pose, is left out as far as the
-    /// plug can move towards it: at most by the overlap, beyond which it could be a wall.
+    /// plug can move towards it: at most to the walls or, if they are not known, by the overlap, beyond which it could be
+    /// a wall.
     fn centre(&mut self, axis: usize, height: f64, max_play: f64) -> f64 {
-        let mut found = None;
+        let (mut found, mut least) = (None, i32::MAX);
         loop {
             let [upper, lower] = &self.maps(axis);
             let maps = [upper, lower];
             let Some([low, high]) = self.free(maps, axis, height, max_play) else { break };
             found = Some([low, high]);
+            least = least.min(high - low);
+            let by_overlap = f64::from(least) * CELL + self.interference;
+            let most = self.walls.map_or(by_overlap, |walls| walls[axis]);
             let beyond = [low - 1, high + 1].map(|offset| along(axis, offset));
             let springs = beyond.map(|shift| self.spring(maps, shift, height));
             let one = springs[0].is_empty() != springs[1].is_empty();
-            if !one || f64::from(high - low) * CELL >= self.walls[axis] {
+            if !one || f64::from(high - low) * CELL >= most {
                 break;
             }
             self.leave_out(springs.concat());
@@ -164,12 +170,23 @@ fn along(axis: usize, offset: i32) -> [i32; 2] {
 pub fn mate(parts: &Parts, scene: &Scene, pose: &Pose, max_play: f64) -> Mate {
     let fine = Fine::new(scene, pose, max_play);
     let (socket, plug) = (&scene.sockets[pose.out], &scene.plugs[pose.turn]);
-    let (stopped, pose) = (pose.z, &fine.between_springs(pose));
+    let sprung = fine.between_springs(pose);
+    let walls = sprung.as_ref().map(|(_, walls)| *walls);
+    let (stopped, pose) = (pose.z, sprung.as_ref().map_or(pose, |(between, _)| between));
     let (window, step, shift) = (fine.window, fine.step, pose.shift);
-    let walls = fine.between_walls(pose).map(|of| of.map_or(0.0, |[_, play]| play));
     let (interfering, around) = (Vec::new(), Default::default());
-    let mut measurement =
-        PlayMeasurement { socket, plug, window, interfering, around, step, shift, walls };
+    let interference = fine.interference(pose);
+    let mut measurement = PlayMeasurement {
+        socket,
+        plug,
+        window,
+        interfering,
+        interference,
+        around,
+        step,
+        shift,
+        walls,
+    };
     measurement.leave_out(fine.overlap(pose));
     let height = pose.z + LIFT;
     let mut play_m = [0.0; 2];

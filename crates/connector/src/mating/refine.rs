@@ -37,6 +37,8 @@ const DROP: f64 = 0.1 * MM;
 const SEATED: f64 = 1.0 * MM;
 /// Largest interference of a contact spring, m.
 const SPRING: f64 = 0.6 * MM;
+/// Smallest interference of a spring that presses the plug to a wall, as a share of the play between the walls.
+const PRESSED: f64 = 0.25;
 /// Share of the largest area of walls that face one another from which all of them count as facing.
 const FULL_AREA: f64 = 0.995;
 
@@ -308,30 +310,29 @@ impl Fine {
         found
     }
 
-    /// Returns a pose that interferes in the middle between the walls that face the plug. If only springs stop the plug
-    /// before most walls face one another, it is there, deeper than before.
-    pub fn between_springs(&self, pose: &Pose) -> Pose {
-        let middle = |pose: &Pose| {
-            let between = self.between_walls(pose);
-            let off = between.map(|of| of.map_or(0.0, |[off, _]| off));
-            (
-                between,
-                Pose { shift: [0, 1].map(|axis| pose.shift[axis] + off[axis]), ..pose.clone() },
-            )
+    /// Returns the pose in the middle between the walls that face the plug, if springs hold it beside it, and the play
+    /// between the walls along x and y, m. If only springs stop the plug before most walls face one another, it is
+    /// deeper. Pins in narrow holes that have little play in a wide opening do not count as springs.
+    pub fn between_springs(&self, pose: &Pose) -> Option<(Pose, [f64; 2])> {
+        let middle = |pose: Pose| {
+            let [x, y] = self.between_walls(&pose);
+            let ([x, y], play) = ([x?[0], y?[0]], [x?[1], y?[1]]);
+            Some((Pose { shift: [pose.shift[0] + x, pose.shift[1] + y], ..pose }, play))
         };
-        let free = |of: &Option<[f64; 2]>| of.is_some_and(|[_, play]| play >= -2.0 * TOLERANCE);
         // The plug can rest a little higher, on its body.
         let lowered = |raised: i32| {
             let by = self.missed(pose) - f64::from(raised) * DROP;
-            let (between, lower) = middle(&Pose { z: pose.z - by, ..pose.clone() });
-            let springs =
-                by > SEATED && between.iter().all(free) && self.interference(&lower) <= SPRING;
-            springs.then(|| self.with_depth(lower))
+            let (lower, play) = middle(Pose { z: pose.z - by, ..pose.clone() })?;
+            let free = play.iter().all(|play| *play >= -2.0 * TOLERANCE);
+            let springs = by > SEATED && free && self.interference(&lower) <= SPRING;
+            springs.then(|| (self.with_depth(lower), play))
         };
-        if let Some(lower) = (0..4).find_map(lowered).filter(|_| !pose.through) {
-            return lower;
-        }
-        if self.overlap(pose).is_empty() { pose.clone() } else { middle(pose).1 }
+        let lower = (0..4).find_map(lowered).filter(|_| !pose.through);
+        lower.or_else(|| {
+            let interference = self.interference(pose);
+            let stiff = |play: [f64; 2]| interference >= PRESSED * play[0].min(play[1]);
+            middle(pose.clone()).filter(|(_, play)| interference > 0.0 && stiff(*play))
+        })
     }
 
     /// Returns the distance of a pose from the middle between the walls that face the plug, along x and y, and the play

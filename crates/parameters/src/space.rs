@@ -4,8 +4,7 @@ pub use crate::numbers::{DENSITY as DENSITY_KEY, DIRECTION as DIRECTION_KEY};
 use crate::numbers::{Kind, out_of_bounds};
 use crate::{Parameter, Path, Scale};
 use ask_tell::GridPoint;
-use input::units::without_unit;
-use input::{Check, InputError, read, wrong_unit};
+use input::{Check, InputError, read};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -44,10 +43,6 @@ impl Variable {
             .into_iter()
             .find_map(|bound| out_of_bounds(&self.key, bound, self.key.bounds()));
         let log = "on a log scale step must be above 1 and low above 0";
-        // Multiples of 0.05 degrees are steps of a printer or a robot, and in radians no whole degrees.
-        let angle = |bound| wrong_unit::angle(bound, [0.0, 90.0], 0.05);
-        let radians = [low, high].into_iter().find_map(angle).map(|words| words.join(" "));
-        let radians = radians.filter(|_| without_unit(&self.key).1 == "°");
         let settable = matches!(self.key.kind(), Kind::Infill | Kind::File | Kind::Finger);
         let unset =
             "cannot be set by a design; accepted are numbers of infill, task file and finger";
@@ -58,7 +53,6 @@ impl Variable {
             (linear && step <= 0.0, "step must be above 0"),
             (!linear && (step <= 1.0 || low <= 0.0), log),
             (outside.is_some(), outside.as_deref().unwrap_or_default()),
-            (radians.is_some(), radians.as_deref().unwrap_or_default()),
             (step < FINEST_STEP, "step must be 1e-6 or more"),
             (wide, "step must not be larger than high - low"),
             (uneven, "high - low must be a whole number of steps, at most 1e6"),
@@ -307,23 +301,6 @@ source = "paper"
         assert!(error.to_string().contains("log scale"), "{error}");
         let again: Space = toml::from_str(&toml::to_string(&space).unwrap()).unwrap();
         assert_eq!(again, space);
-    }
-
-    #[test]
-    fn an_angle_in_radians_is_rejected() {
-        let of = |high: &str, step: &str| {
-            let text = GOOD.replace(DENSITY_KEY, DIRECTION_KEY).replace("low = 10.0", "low = 0.0");
-            let text = text.replace("high = 30.0", &format!("high = {high}"));
-            Space::parse(&text.replace("step = 1.0", &format!("step = {step}")), "s.toml")
-        };
-        for (high, degrees) in [("0.6981", "40.0"), ("1.0472", "60.0"), ("1.5708", "90.0")] {
-            let error = of(high, high).unwrap_err().to_string();
-            let words = format!("{high} degrees: are these radians?");
-            assert!(error.contains(&words) && error.contains(degrees), "{error}");
-        }
-        for (high, step) in [("1.5", "0.5"), ("1.25", "0.25"), ("22.5", "4.5"), ("40.3", "1.3")] {
-            assert!(of(high, step).is_ok(), "{high}");
-        }
     }
 
     #[test]

@@ -408,8 +408,7 @@ fn a_robot_stop_at_the_seat_comes_first_with_a_push_that_avoids_it() {
     assert_eq!(check("servo"), serde_json::json!([]));
     let warned = check("rigid");
     let warned = warned[0].as_str().expect("a warning");
-    let words = "the plug is seated, but the robot rigid stops. Set `strategy.phase.assembly.move_mm.z` to -";
-    assert!(warned.starts_with(words), "{warned}");
+    assert!(warned.starts_with("the plug is seated, but the robot rigid stops"), "{warned}");
     let evaluate = "evaluate --task usb --robot rigid --density 20 --direction 10 --no-ribs";
     said(evaluate, &[]).says(&["Not usable as it is: the robot stops in 1"]);
     let push = said(evaluate, &["--json"]).json()["shorter_push"].take();

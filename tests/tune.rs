@@ -111,7 +111,7 @@ fn a_budget_limits_the_search_but_not_the_stages_before_it() {
         let of = |stage: &str| steps.clone().filter(|step| step["stage"] == stage).count();
         (found["windows"].as_u64().unwrap(), of("families"), of("search"))
     };
-    let ((_, before, none), (windows, families, searched)) = (tuned("1"), tuned("100"));
+    let ((_, before, none), (windows, families, searched)) = (tuned("60"), tuned("100"));
     assert_eq!((none, before), (0, families));
     assert!(before > 0 && searched > 0 && windows <= 100, "{searched} in {windows}");
 }

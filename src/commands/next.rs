@@ -206,9 +206,9 @@ impl Advised {
     fn wider(&self, print_cost_mm: f64) -> String {
         let Advice { choice, use_now, next, stop, .. } = &self.advice;
         let wider = |found: &&Choice| {
-            let is_first = next.first().is_some_and(|first| first.design == found.design);
+            let listed = next.iter().any(|print| print.design == found.design);
             let by = |best: &BestMeasured| found.expected_mm - best.range_mm >= print_cost_mm;
-            *stop && !found.measured && !is_first && use_now.as_ref().is_none_or(by)
+            *stop && !found.measured && !listed && use_now.as_ref().is_none_or(by)
         };
         choice.as_ref().filter(wider).map_or(String::new(), |found| {
             let expected = interval(found.expected_mm, found.low_mm, found.high_mm);

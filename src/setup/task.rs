@@ -7,12 +7,10 @@ use crate::layout::lines;
 use crate::{Failure, not_stopped};
 use connector::check::{Problem, problems};
 use connector::nominal;
-use connector::push::{self, shorter_push};
 use connector::tune::{Stage, Tuned};
 use input::Place;
 use input::shipped::{SPACES, Source};
 use input::units::N_PER_MM;
-use insertion::evaluation::tolerance::evaluate_grasp;
 use insertion::stiffness::representative_designs;
 use insertion::{EngineKind, Finger, Grasp, Outcome, Recording, Robot, Search, Space, Task, Trial};
 use report::answer::words::mating_force;
@@ -100,7 +98,7 @@ impl TaskCheck {
         if problems.is_empty() {
             let robot = robot(&with.name)?;
             let (finger, trial) = nominal_start(&task, &robot, with.engine, stop)?;
-            warnings = nominal_warnings((&task, &trial), &robot, with.engine, stop)?;
+            warnings = nominal_warnings(&task, &trial, &robot);
             let explanation = nominal::explain(&task, &trial);
             nominal = Some((finger, trial, explanation));
         }
@@ -149,25 +147,15 @@ pub(crate) fn nominal_start(
 }
 
 /// Returns warnings about a trial of [`nominal_start`]: a weak grip, and a robot stop although the plug is seated.
-pub(crate) fn nominal_warnings(
-    (task, trial): (&Task, &Trial),
-    robot: &Robot,
-    engine: EngineKind,
-    stop: &AtomicBool,
-) -> Result<Vec<String>, Failure> {
-    let mut found: Vec<String> = nominal::weak_grip(task, trial).into_iter().collect();
-    if trial.outcome == Outcome::Inserted && trial.robot_stopped {
-        let again = |task: &Task| {
-            let (_, finger) = medium(task);
-            let rig = engine.rig(task, robot, &finger, 1.0)?;
-            let grasp = Grasp { stop, ..Grasp::of(&finger) };
-            let found = evaluate_grasp(&*rig, grasp, Search::default());
-            not_stopped(stop).map(|()| found)
-        };
-        let remedy = push::remedy(shorter_push(task, robot, again)?.as_ref());
-        found.push(format!("the plug is seated, but the robot {} stops. {remedy}", robot.name));
-    }
-    Ok(found)
+pub(crate) fn nominal_warnings(task: &Task, trial: &Trial, robot: &Robot) -> Vec<String> {
+    let stops = trial.outcome == Outcome::Inserted && trial.robot_stopped;
+    let stops = stops.then(|| {
+        let robot = &robot.name;
+        format!(
+            "the plug is seated, but the robot {robot} stops; `optimize evaluate` computes the longest push without a stop"
+        )
+    });
+    nominal::weak_grip(task, trial).into_iter().chain(stops).collect()
 }
 
 /// Returns the measured finger of medium stiffness, with the finger model of the task, and the recording of its trial

@@ -83,7 +83,7 @@ impl OpenStudy {
             }
             let (_, trial) = nominal_start(task, robot, *engine, &NEVER)?;
             let name = &task.name;
-            for text in nominal_warnings((task, &trial), robot, *engine, &NEVER)? {
+            for text in nominal_warnings(task, &trial, robot) {
                 warn(&format!("{name}: with the medium finger: {text}"));
             }
             if trial.outcome != Outcome::Inserted {

@@ -37,7 +37,7 @@ pub struct Request {
     pub robot: RobotRequest,
     /// Largest number of windows to measure; start, shipped strategies and final checks are not shortened
     #[arg(long, value_name = "N", default_value_t = DEFAULT_BUDGET,
-          value_parser = clap::value_parser!(u16).range(1..=10_000))]
+          value_parser = clap::value_parser!(u16).range(60..=10_000))]
     pub budget: u16,
     /// Seed of the search
     #[arg(long, value_name = "N", default_value_t = 0)]

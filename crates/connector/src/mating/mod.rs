@@ -140,7 +140,7 @@ pub fn mates(
         let missed = found.as_ref().is_none_or(|found| !found.has(Mate::is_seated));
         // A stiff spring may hide the seat, or stop the plug beside it.
         if missed && (inserted || effort == search::EFFORTS[1]) {
-            let sprung = found_with(&parts, &scene, &[search::SPRING], stop)?;
+            let sprung = found_with(&parts, &scene, &[search::STIFF_SPRING], stop)?;
             if let Some(sprung) = sprung.filter(|sprung| sprung.has(Mate::is_free)) {
                 return Ok(sprung);
             }

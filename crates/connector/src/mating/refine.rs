@@ -36,7 +36,7 @@ const DROP: f64 = 0.1 * MM;
 /// the body of a plug whose tip is on the floor.
 const SEATED: f64 = 1.0 * MM;
 /// Largest interference of a contact spring, m.
-const SPRING: f64 = 0.6 * MM;
+const MAX_SPRING: f64 = 0.6 * MM;
 /// Smallest interference of a spring that presses the plug to a wall, as a share of the play between the walls.
 const PRESSED: f64 = 0.25;
 /// Share of the largest area of walls that face one another from which all of them count as facing.
@@ -319,16 +319,16 @@ impl Fine {
             let ([x, y], play) = ([x?[0], y?[0]], [x?[1], y?[1]]);
             Some((Pose { shift: [pose.shift[0] + x, pose.shift[1] + y], ..pose }, play))
         };
+        let missed = if pose.through { 0.0 } else { self.missed(pose) };
         // The plug can rest a little higher, on its body.
         let lowered = |raised: i32| {
-            let by = self.missed(pose) - f64::from(raised) * DROP;
+            let by = Some(missed - f64::from(raised) * DROP).filter(|by| *by > SEATED)?;
             let (lower, play) = middle(Pose { z: pose.z - by, ..pose.clone() })?;
             let free = play.iter().all(|play| *play >= -2.0 * TOLERANCE);
-            let springs = by > SEATED && free && self.interference(&lower) <= SPRING;
+            let springs = free && self.interference(&lower) <= MAX_SPRING;
             springs.then(|| (self.with_depth(lower), play))
         };
-        let lower = (0..4).find_map(lowered).filter(|_| !pose.through);
-        lower.or_else(|| {
+        (0..4).find_map(lowered).or_else(|| {
             let interference = self.interference(pose);
             let stiff = |play: [f64; 2]| interference >= PRESSED * play[0].min(play[1]);
             middle(pose.clone()).filter(|(_, play)| interference > 0.0 && stiff(*play))

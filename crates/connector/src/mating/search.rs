@@ -15,7 +15,7 @@ pub const MIN_DEPTH: f64 = 0.4 * MM;
 /// Interferences of the passes, m: contact springs are drawn unloaded.
 pub const INTERFERENCES: [f64; 2] = [0.0, 0.2 * MM];
 /// Interference of the pass for stiff springs, m, which loses thin walls.
-pub const SPRING: f64 = 0.5 * MM;
+pub const STIFF_SPRING: f64 = 0.5 * MM;
 /// Smallest cell of the coarse maps, m.
 const MIN_CELL: f64 = 0.1 * MM;
 /// Budgets of the search in comparisons of two cells: a fast one, and one that resolves thin walls.

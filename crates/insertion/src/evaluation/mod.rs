@@ -150,9 +150,18 @@ impl Evaluation {
         self.window.nominal != Outcome::Inserted && self.robot_stops > 0
     }
 
-    /// Returns whether a protective stop of the robot ended most trials, although the nominal start inserts.
+    /// Returns the least number of insertions that a protective stop of the robot ended, and of all insertions: failures
+    /// may stop it, too.
+    pub fn stopped_insertions(&self) -> [u32; 2] {
+        let failures = self.failure_counts.iter().sum();
+        let insertions = self.trials.saturating_sub(failures + self.diverged);
+        [self.robot_stops.saturating_sub(failures), insertions]
+    }
+
+    /// Returns whether a protective stop of the robot ended most insertions, although the nominal start inserts.
     pub fn mostly_stopped(&self) -> bool {
-        self.window.nominal == Outcome::Inserted && self.robot_stops > self.trials / 2
+        let [stopped, insertions] = self.stopped_insertions();
+        self.window.nominal == Outcome::Inserted && stopped > insertions / 2
     }
 }
 

@@ -359,8 +359,9 @@ pub fn window(evaluation: &Evaluation) -> Vec<Line> {
 
 /// Returns `; ` and the number of trials that a protective stop of the robot ended, for the line of the ends; empty if
 /// there are none, or if they end most trials, as the headline says.
-fn some_stops(Evaluation { robot_stops, trials, .. }: &Evaluation) -> String {
-    match (1..=trials / 2).contains(robot_stops) {
+fn some_stops(evaluation: &Evaluation) -> String {
+    let Evaluation { robot_stops, trials, .. } = evaluation;
+    match *robot_stops > 0 && !evaluation.mostly_stopped() {
         true => format!(
             "; robot stop in {robot_stops} of {trials} trials: a plug seated by then is inserted"
         ),

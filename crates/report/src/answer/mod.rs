@@ -14,8 +14,9 @@ pub mod words;
 
 use calibration::next::BestMeasured;
 use calibration::rank_correlation::{Order, RankCorrelation, errors_percent, rank_correlation};
+use input::shipped::TASKS;
 use insertion::{Design, Evaluation, Measure};
-use study::{Recorded, StudyConfig, StudyRecord, Volume, Walked, volume};
+use study::{FINGER, Recorded, StudyConfig, StudyRecord, Volume, Walked, volume};
 
 pub use force::ExcessForce;
 use recommended::firm_range_mm;
@@ -186,12 +187,18 @@ impl<'a> Answer<'a> {
         self.measured.iter().max_by(|(_, a), (_, b)| a.total_cmp(b))
     }
 
-    /// Returns the best measured finger, if measurements do not support the best one in simulation, and only the range
-    /// matters: the published fingers have no other measured values.
+    /// Returns the best measured finger, if measurements do not support the best one in simulation, with which the robot
+    /// does not stop, and only the range matters: the published fingers have no other measured values. `None` for a user's
+    /// task or finger file, of which they are not.
     pub fn use_now(&self) -> Option<BestMeasured> {
-        let StudyConfig { objective, constraints, .. } = &self.record.config;
-        let by_range = objective.single().is_some() && constraints.is_empty();
-        let (design, range_mm) = self.best_measured().filter(|_| by_range && self.is_refuted())?;
+        let StudyConfig { objective, constraints, conclusion, provenance, .. } =
+            &self.record.config;
+        let shipped = |file: &String| TASKS.iter().any(|task| task.file == file);
+        let published = conclusion.task_files.iter().all(shipped)
+            && !provenance.input_sha256.contains_key(FINGER);
+        let by_range = objective.single() == Some(Measure::Range) && constraints.is_empty();
+        let applies = published && by_range && self.stopped().is_none() && self.is_refuted();
+        let (design, range_mm) = self.best_measured().filter(|_| applies)?;
         let (design, fingers) = (design.clone(), self.measured.len());
         Some(BestMeasured { design, range_mm: *range_mm, at_least: false, fingers })
     }

@@ -137,7 +137,7 @@ class Answer(Result):
 
     ``verdict`` is ``print`` (print ``finger``), ``any`` (print any of the ties), ``simulated`` (``finger`` is the best in
     simulation, or ties; no measurement supports it), ``measured_before`` (use a finger that was measured), ``choose``
-    (choose from a Pareto front), ``nothing_inserts``, ``none_feasible`` or ``robot_stops`` (in most trials).
+    (choose from a Pareto front), ``nothing_inserts``, ``none_feasible`` or ``robot_stops`` (in most insertions).
     """
 
     verdict: Literal["print", "any", "simulated", "measured_before", "choose", "nothing_inserts", "none_feasible",

@@ -264,7 +264,7 @@ class Advice(Result):
     loo_inside: int
     #: Printed fingers that insert from no start; they are not recommended again.
     not_measurable: tuple[dict[str, float], ...]
-    #: Number of simulations with a robot stop in most trials, and of all simulations.
+    #: Number of simulations with a robot stop in most insertions, and of all simulations.
     stopped_simulations: int
     simulations: int
     measurements_missing: bool

@@ -142,7 +142,7 @@ class Evaluation(Window, Subject):
     ``range_mm`` is its width, ``negative_mm`` and ``positive_mm`` are its ends.
     """
 
-    #: Shorter push, if the robot stops in most trials and such a push is found.
+    #: Shorter push, if the robot stops in most insertions and such a push is found.
     shorter_push: ShorterPush | None = None
     wall_s: float = field(compare=False)
     #: Bands in which the outcomes differ; only with ``repeat``.

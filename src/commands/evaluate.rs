@@ -63,7 +63,7 @@ pub struct Evaluated {
     /// Tolerance window and other simulated values.
     #[serde(flatten)]
     pub evaluation: Evaluation,
-    /// Shorter push with which the robot does not stop, if it stops in most trials and such a push is found.
+    /// Shorter push with which the robot does not stop, if it stops in most insertions and such a push is found.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shorter_push: Option<ShorterPush>,
     /// Wall-clock duration of the evaluation, s.

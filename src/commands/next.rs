@@ -66,7 +66,7 @@ pub struct Advised {
     loo_inside: usize,
     /// Fingers that were printed, but of which no range could be measured.
     not_measurable: Vec<Design>,
-    /// Number of simulations with a robot stop in most trials, and of all simulations.
+    /// Number of simulations with a robot stop in most insertions, and of all simulations.
     stopped_simulations: usize,
     simulations: usize,
     /// Whether the measurement file does not exist yet.
@@ -166,7 +166,7 @@ impl Advised {
         let [stopped, of] = [self.stopped_simulations, self.simulations];
         let not_usable = (stopped > of / 2).then(|| {
             format!(
-                "Not usable as it is: the robot stops in most trials of {stopped} of {of} simulations. \
+                "Not usable as it is: the robot stops in most insertions of {stopped} of {of} simulations. \
                  {STOP_REMEDY}; `optimize evaluate` computes a push\n"
             )
         });

@@ -26,7 +26,7 @@ struct Point {
     range_mm: f64,
     /// Failures below and above the window.
     failures: [Option<FailureClass>; 2],
-    /// Whether the robot stopped in most trials.
+    /// Whether the robot stopped in most insertions.
     stopped: bool,
 }
 
@@ -126,7 +126,7 @@ impl Emulator {
         (self.mean_mm + self.sd_mm * self.process.mean(at)).max(0.0)
     }
 
-    /// Returns the number of simulations with a robot stop in most trials, and of all simulations.
+    /// Returns the number of simulations with a robot stop in most insertions, and of all simulations.
     pub fn stopped(&self) -> [usize; 2] {
         [self.points.iter().filter(|point| point.stopped).count(), self.points.len()]
     }

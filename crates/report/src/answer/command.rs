@@ -102,7 +102,7 @@ pub fn next(answer: &Answer, dir: &Path) -> (String, &'static str) {
     }
 }
 
-/// Returns the command that evaluates the finger on the first task on which the robot stops in most trials; `None` if
+/// Returns the command that evaluates the finger on the first task on which the robot stops in most insertions; `None` if
 /// there is none.
 fn evaluate(answer: &Answer, inputs: &InputArguments) -> Option<String> {
     let (place, _) = answer.stopped()?;

@@ -127,14 +127,14 @@ impl<'a> Answer<'a> {
         }
     }
 
-    /// Returns the index of the first task on which the robot stops in most trials of the finger to print, and the
+    /// Returns the index of the first task on which the robot stops in most insertions of the finger to print, and the
     /// evaluation on it; `None` if there is none.
     pub fn stopped(&self) -> Option<(usize, &'a Evaluation)> {
         let (_, tasks) = self.finger_and_evaluations()?;
         tasks.into_iter().enumerate().find(|(_, found)| found.mostly_stopped())
     }
 
-    /// Returns the headline of a finger with which the robot stops in most trials.
+    /// Returns the headline of a finger with which the robot stops in most insertions.
     fn not_usable(&self) -> Option<String> {
         let (place, found) = self.stopped()?;
         let config = &self.record.config;

@@ -105,7 +105,7 @@ pub fn remedy(nominal: Outcome, robot_stopped: bool) -> &'static str {
     }
 }
 
-/// Returns the headline of a finger with which the robot stops in most trials; `on` is ` on ` and the task, or empty.
+/// Returns the headline of a finger with which the robot stops in most insertions; `on` is ` on ` and the task, or empty.
 pub fn not_usable(Evaluation { robot_stops, trials, .. }: &Evaluation, on: &str) -> String {
     format!("Not usable as it is: the robot stops in {robot_stops} of {trials} trials{on}")
 }

@@ -32,8 +32,6 @@ pub struct Contents {
     pub evaluations: Vec<Recorded>,
     /// Segments of equal provenance; the first begins at 0.
     pub segments: Vec<Segment>,
-    /// Number of records that other programs wrote (notes of Optuna's dashboard); they are ignored.
-    pub foreign: usize,
 }
 
 impl Journal {
@@ -138,7 +136,7 @@ fn parse(bytes: &[u8], path: &Path, config: &StudyConfig) -> Result<(Contents, u
     let whole = bytes.iter().rposition(|&byte| byte == b'\n').map_or(0, |last| last + 1);
     let lines: Vec<&[u8]> = bytes[..whole].split_inclusive(|&byte| byte == b'\n').collect();
     let beginning = Segment { first: 0, provenance: config.provenance.clone() };
-    let mut contents = Contents { evaluations: Vec::new(), segments: vec![beginning], foreign: 0 };
+    let mut contents = Contents { evaluations: Vec::new(), segments: vec![beginning] };
     let [first, second, rest @ ..] = lines.as_slice() else {
         // The process was killed while it wrote the header; anything else must not be overwritten.
         let header = header::encode(config).map_err(|error| foreign(error.to_string()))?;
@@ -165,11 +163,10 @@ fn parse(bytes: &[u8], path: &Path, config: &StudyConfig) -> Result<(Contents, u
 }
 
 impl Contents {
-    /// Adds a line after the header.
+    /// Adds a line after the header. Records of other programs (notes of Optuna's dashboard) are ignored.
     fn add(&mut self, line: &str) -> Result<(), LineError> {
         let expected = self.evaluations.len() as u64;
         if line::is_foreign(line) {
-            self.foreign += 1;
             return Ok(());
         }
         match header::decode_segment(line)? {

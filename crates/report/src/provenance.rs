@@ -11,7 +11,7 @@ use parameters::numbers::RCC_KEY;
 use study::{Provenance, Recorded, StudyRecord};
 
 /// Names of lines that are omitted here, because other sections of the page show them.
-const ELSEWHERE: [&str; 10] = [
+const ELSEWHERE: [&str; 8] = [
     "best design",
     "firm range",
     "window",
@@ -20,8 +20,6 @@ const ELSEWHERE: [&str; 10] = [
     "ties",
     "safe choice",
     "least force",
-    "  softest",
-    "  stiffest",
 ];
 
 /// Returns collapsed notes on the interpretation of the numbers, further numbers and settings, and the command that

@@ -234,7 +234,7 @@ fn several_tasks_are_evaluated_and_aggregated() {
     }
     let page = studies.page("mean");
     assert!(page.contains("start along y on usb,") && page.contains("start along y on far,"));
-    assert!(page.contains("mean of unscaled values"));
+    assert!(page.contains("--aggregate mean"));
     assert_eq!(studies.column("mean", "usb.range_mm").len(), 6);
     assert_ne!(studies.column("mean", "far.range_mm"), studies.column("mean", "usb.range_mm"));
     let more = ["--task", &tasks, "--optimizer", "sobol", "--json"];

@@ -48,7 +48,7 @@ fn a_report_shows_bench_levers_and_maps_and_leaves_the_rest_as_it_was() {
     let copy = copied();
     copy.report("study").succeeds();
     let page = copy.read("study/report.html");
-    for section in ["bench", "levers", "maps", "failures", "provenance"] {
+    for section in ["bench", "levers", "maps", "provenance"] {
         assert!(page.contains(&format!("<section id=\"{section}\"")), "no {section}");
     }
     let found = files(&copy.dir("study"));

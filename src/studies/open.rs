@@ -152,7 +152,7 @@ impl OpenStudy {
         // Before the report page, which shows the picture of the failed trial.
         let problem = || unusable::check(&dir, &record, setup, stop).err();
         let unusable = if interrupted() { None } else { problem() };
-        report::write(&dir, &answer, &setup.evaluator.surrogate)?;
+        report::write(&dir, &answer)?;
         if interrupted() {
             return Err(Failure::Interrupted(Some(resume_hint(study))));
         }

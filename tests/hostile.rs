@@ -328,7 +328,7 @@ fn no_room_for_an_output_is_a_message_and_leaves_nothing() {
         (format!("export finger --format sheet {finger} --out"), "f.html"),
         (format!("export mjcf --task usb {finger} --out"), "f.xml"),
         (format!("finger {finger} --svg"), "f.svg"),
-        (format!("{trial} --record"), "t.csv"),
+        (format!("{trial} --record"), "t.html"),
         (format!("{trial} --plot"), "t.svg"),
         (format!("{trial} --engine fake --svg"), "t.svg"),
         (format!("compare {} --svg", study.display()), "c.svg"),

@@ -319,7 +319,6 @@ fn no_room_for_an_output_is_a_message_and_leaves_nothing() {
     for (words, file) in [
         (calibrate.to_owned(), ""),
         (format!("measure add --task usb {finger} --range-mm 5"), "m.csv"),
-        (format!("{new} --out"), "mine.toml"),
         (format!("{new} --round 8x12 --clearance 0.1 --body 12x12x20 --out"), "m.toml"),
         (import, "mine.toml"),
         ("task check usb --engine fake --svg".to_owned(), "t.svg"),

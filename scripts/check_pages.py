@@ -34,7 +34,7 @@ def renamed(folder, source, name):
 
 
 def create_pages(program, folder):
-    """Creates the pages: reports of three studies, a replay, a comparison; returns their paths."""
+    """Creates the pages: reports of three studies, a replay; returns their paths."""
     space, robot = renamed(folder, "spaces/infill.toml", "infill"), renamed(folder, "robots/servo.toml", "servo")
     task, study, replay = renamed(folder, "tasks/usb.toml", "back"), folder / "study", folder / "replay.html"
 
@@ -59,9 +59,7 @@ def create_pages(program, folder):
     stuck = subprocess.run([program, "--task", folder / "tight.toml", "--budget", "4", "--no-cache", "--quiet", "--out", folder / "stuck"],
                            capture_output=True, check=False)
     check(stuck.returncode == 1, "a study in which no design inserts ended without an error")
-    compared = folder / "compare.html"
-    run("compare", study, "--html", compared)
-    return study / "report.html", replay, many / "report.html", folder / "stuck/report.html", compared
+    return study / "report.html", replay, many / "report.html", folder / "stuck/report.html"
 
 
 def check(condition, message):
@@ -187,7 +185,7 @@ def check_end(page, where):
 
 def main(program):
     with tempfile.TemporaryDirectory() as folder, Browser() as browser:
-        report, replay, many, stuck, compared = create_pages(program, Path(folder))
+        report, replay, many, stuck = create_pages(program, Path(folder))
         for dark in [False, True]:
             for width in [1280, 390]:
                 where = f"{'dark' if dark else 'light'}, {width} px"
@@ -207,10 +205,6 @@ def main(program):
                       f"stuck, {where}: {text[:200]}")
                 check_legibility(page, f"stuck, {where}", width)
                 check_page(page, f"stuck, {where}")
-                page.close()
-                page = browser.open(compared, width, 900, dark)
-                check_legibility(page, f"compare, {where}", width)
-                check_page(page, f"compare, {where}")
                 page.close()
                 page = browser.open(replay, width, 900, dark)
                 check_playback(page, f"replay, {where}")

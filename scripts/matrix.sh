@@ -157,9 +157,9 @@ disks() {
         "export finger --format stl --density 20 --direction 10 --out disk/f.stl" \
         "export finger --format 3mf --density 20 --direction 10 --out disk/f.3mf" \
         "export mjcf --task usb --density 20 --direction 10 --out disk/f.xml" \
-        "trial $one --engine fake --svg disk/f.svg" "trial $one --engine direct --record disk/f.csv" \
+        "trial $one --engine fake --svg disk/f.svg" "trial $one --engine direct --record disk/f.html" \
         "trial $one --engine direct --plot disk/f.svg" \
-        "task new mine --engine fake --out disk/f.toml" \
+        "task new mine --engine fake --round 8x12 --clearance 0.1 --body 12x12x20 --out disk/f.toml" \
         "task import --engine fake --unit mm --plug $mesh-plug.stl --socket $mesh-socket.stl --out disk/f.toml" \
         "task check usb --engine fake --svg disk/f.svg" \
         "measure add --task usb --density 20 --direction 10 --range-mm 5 disk/f.csv" \

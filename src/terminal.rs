@@ -1,4 +1,4 @@
-//! Standard output and standard error: control characters are escaped; on a terminal labels are coloured.
+//! Standard output and standard error: control characters are escaped; on a terminal errors and warnings are coloured.
 
 use crate::Failure;
 use clap::builder::styling::{AnsiColor, Style};
@@ -35,38 +35,21 @@ fn takes_colours(stream: &impl IsTerminal) -> bool {
     stream.is_terminal() && set("NO_COLOR").is_none() && !dumb()
 }
 
-/// Column in which the text of a line begins, after its label: `ends          jammed`.
-const INDENT: usize = 14;
+const RED: Style = AnsiColor::Red.on_default().bold();
+const YELLOW: Style = AnsiColor::Yellow.on_default().bold();
+/// Labels of errors and warnings at the beginning of a line, with their colours.
+const LABELS: [(&str, Style); 4] =
+    [("error:", RED), ("warning:", YELLOW), ("warning ", YELLOW), ("force ", YELLOW)];
 
-/// Returns text with coloured labels, `error:` and `warning:`.
+/// Returns text with coloured labels of errors and warnings.
 fn coloured(text: &str) -> String {
-    text.split_inclusive('\n').map(coloured_line).collect()
-}
-
-fn coloured_line(line: &str) -> String {
-    const RED: Style = AnsiColor::Red.on_default().bold();
-    const YELLOW: Style = AnsiColor::Yellow.on_default().bold();
-    const CYAN: Style = AnsiColor::Cyan.on_default();
-    let name = || {
-        let (name, rest) = line.split_at_checked(INDENT)?;
-        let gap = name.ends_with(' ') && !rest.starts_with([' ', '\n']);
-        let words = name.starts_with(|c: char| c.is_lowercase()) && !name.contains([':', '=', ',']);
-        // A label has single spaces between its words; two spaces are part of a table.
-        (gap && words && !name.trim_end().contains("  ")).then_some(INDENT)
+    let line = |line: &str| {
+        let label = LABELS.into_iter().find_map(|(label, style)| {
+            Some(format!("{style}{label}{style:#}{}", line.strip_prefix(label)?))
+        });
+        label.unwrap_or_else(|| line.to_owned())
     };
-    let (end, style) = match line {
-        _ if line.starts_with("error:") => (6, RED),
-        _ if line.starts_with("warning:") => (8, YELLOW),
-        _ => match name() {
-            Some(end) if line.starts_with("force ") || line.starts_with("warning ") => {
-                (end, YELLOW)
-            }
-            Some(end) => (end, CYAN),
-            None => return line.to_owned(),
-        },
-    };
-    let (name, rest) = line.split_at(end);
-    format!("{style}{name}{style:#}{rest}")
+    text.split_inclusive('\n').map(line).collect()
 }
 
 #[cfg(test)]
@@ -74,18 +57,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_of_lines_are_coloured_and_text_is_not() {
-        let plain = [
-            "Print the finger with 10 % infill",
-            "[plug]",
-            "mass_g = 5.0  # grams",
-            "{\"a\": 1}",
-            "",
-        ];
-        for text in plain {
+    fn errors_and_warnings_are_coloured_and_text_is_not() {
+        for text in ["Print the finger with 10 % infill", "ends          jammed\n", ""] {
             assert_eq!(coloured(text), text);
         }
-        assert_eq!(coloured("ends          jammed\n"), "\u{1b}[36mends          \u{1b}[0mjammed\n");
         assert!(coloured("error: x").starts_with("\u{1b}[1m\u{1b}[31merror:\u{1b}[0m"));
         assert!(coloured("warning       measure it").starts_with("\u{1b}[1m\u{1b}[33m"));
     }

@@ -444,10 +444,11 @@ fn a_co_design_study_names_its_parameters_everywhere() {
     let journal = studies.journal("s");
     for key in keys.split(' ') {
         assert!(json["best"][key].is_f64(), "{key} is not in {json}");
-        for (place, text) in [("table", &table), ("journal", &journal), ("page", &page)] {
+        for (place, text) in [("table", &table), ("journal", &journal)] {
             assert!(text.contains(key), "{key} is not in the {place}");
         }
     }
+    assert!(page.contains("--set task.strategy.tilt_deg="), "an option of the trial");
     // On the terminal by what they are, with their units.
     text.says(&["% infill at", "rcc", "tilt", "side move y", "touch preload", "force"]);
     // The remote centre matters to the closed form, so equal infill is not enough.

@@ -234,7 +234,7 @@ fn several_tasks_are_evaluated_and_aggregated() {
     }
     let page = studies.page("mean");
     assert!(page.contains("start along y on usb,") && page.contains("start along y on far,"));
-    assert!(page.contains("mean of unscaled values"));
+    assert!(page.contains("--aggregate mean"));
     assert_eq!(studies.column("mean", "usb.range_mm").len(), 6);
     assert_ne!(studies.column("mean", "far.range_mm"), studies.column("mean", "usb.range_mm"));
     let more = ["--task", &tasks, "--optimizer", "sobol", "--json"];
@@ -273,8 +273,8 @@ fn bad_goals_are_answered_with_2_and_what_would_be_right() {
         ("--constraint peak-force<=30N", &["30N", "without its unit"]),
         ("--uncertainty typical", &["--uncertainty", "success-rate", "--objective"]),
         ("--objective success-rate --uncertainty tipical", &["did you mean `typical`"]),
-        ("--objective range,slip --optimizer cma-es", &["gp, random", "single objective only"]),
-        ("--objective range,slip --polish", &["--polish", "single objective only"]),
+        ("--objective range,slip --optimizer cma-es", &["gp, random", "one objective only"]),
+        ("--objective range,slip --polish", &["--polish", "one objective only"]),
         ("--aggregate mean", &["several tasks", "--task usb,rj45"]),
         ("--task usb,usb", &["two tasks are called `usb`"]),
         ("--task usb,usbb", &["usbb", "ket8, ket12"]),

@@ -365,6 +365,7 @@ fn a_task_is_copied_like_another_and_shown_as_it_is() {
     assert_eq!(said("task show usb", &[]).succeeds(), USB);
     said("task show usc", &[]).fails(2, &["did you mean `usb`"]);
     optimize(&["task", "new", "a b", "--out", out]).fails(2, &["letters"]);
+    optimize(&["task", "new", "a", "--out", out]).fails(2, &["--plug, --round or --pins"]);
     said("task new a --plug 8x3 --clearance 0.1", &[]).fails(2, &["8.25x2.4x6.65"]);
     said("task new a --plug 8x3x8 --clearance 0.1 --body 12x8x5", &[])
         .fails(2, &["--body", "9.4 mm"]);

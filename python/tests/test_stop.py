@@ -26,7 +26,7 @@ CALLS = {
     "taught start": f"fo.evaluate('usb', 20, 10, start='taught', {SIDE})",
     "repeats": "fo.evaluate('usb', 20, 10, repeat=1000)",
     "trial": f"fo.trial('usb', 20, 10, {SIDE})",
-    "film": f"fo.trial('usb', 20, 10, record='film.csv', {SIDE})",
+    "film": f"fo.trial('usb', 20, 10, record='film.html', {SIDE})",
     "insertion": f"fo.gym.InsertionEnv('usb', 20, 10, {APPROACH})",
     "study": "fo.Study.create('usb', budget=200, out='study', no_cache=True).run(progress=False)",
     "study of threads": "fo.Study.create('usb', budget=200, out='study', no_cache=True)"

@@ -1,9 +1,9 @@
 //! `optimize compare`: studies of the same problem side by side.
 
 use crate::{Context, Failure, Output, command};
-use report::compare::{compare, page, svg, text};
+use report::compare::{compare, svg, text};
 use std::path::PathBuf;
-use study::{StudyRecord, write_file};
+use study::StudyRecord;
 
 /// Compare optimizers over studies of the same task and objective
 #[derive(Debug, clap::Args)]
@@ -15,9 +15,6 @@ pub struct Request {
     /// Draw the best value so far of each optimizer
     #[arg(long, value_name = "FILE.svg")]
     pub svg: Option<PathBuf>,
-    /// Write table and chart as an HTML page
-    #[arg(long, value_name = "FILE.html")]
-    pub html: Option<PathBuf>,
 }
 
 impl command::Request for Request {
@@ -25,9 +22,6 @@ impl command::Request for Request {
         let load = |dir: &PathBuf| Ok((dir.display().to_string(), StudyRecord::load(dir)?));
         let studies = self.dirs.iter().map(load).collect::<Result<Vec<_>, Failure>>()?;
         let comparison = compare(&studies).map_err(Failure::usage)?;
-        if let Some(file) = &self.html {
-            write_file(file, &page(&comparison)?)?;
-        }
         let picture = svg(&comparison)?;
         Output::new(text(&comparison), comparison).drawn(picture, self.svg.as_ref())
     }

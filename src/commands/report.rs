@@ -18,16 +18,13 @@ pub struct Request {
 pub struct Written {
     page: PathBuf,
     evaluations: usize,
-    warnings: Vec<String>,
 }
 
 impl command::Request for Request {
-    fn run(&self, context: &Context<'_>) -> Result<Output, Failure> {
+    fn run(&self, _context: &Context<'_>) -> Result<Output, Failure> {
         let record = rewrite(&self.dir)?;
-        let warnings = record.remarks();
-        warnings.iter().for_each(|warning| context.note(&format!("warning: {warning}")));
         let (page, evaluations) = (self.dir.join(PAGE), record.evaluations.len());
         let text = format!("wrote the report of {evaluations} evaluations: {}\n", page.display());
-        Ok(Output::new(text, Written { page, evaluations, warnings }))
+        Ok(Output::new(text, Written { page, evaluations }))
     }
 }

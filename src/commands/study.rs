@@ -166,7 +166,13 @@ impl Request {
         if self.budget.is_none() && config.can_settle() {
             (config.settles, config.budget) = (true, EARLY_STOPPING_BUDGET);
         }
-        check(self.optimizer, &config)?;
+        if config.asynchronous && (self.optimizer == OptimizerKind::CmaEs || config.polish > 0) {
+            return Err(Failure::usage(
+                "--async: cma-es and --polish need whole batches; leave it out, or choose another \
+                 --optimizer without --polish",
+            ));
+        }
+        config.check().map_err(|problem| Failure::usage(format!("--{problem}")))?;
         if setup.measured.is_some() {
             on_bench::check(&config)?;
         }
@@ -278,30 +284,4 @@ impl Request {
         config.race = config.can_race();
         Ok(config)
     }
-}
-
-/// Checks that the optimizer supports the options.
-fn check(kind: OptimizerKind, config: &StudyConfig) -> Result<(), Failure> {
-    if config.asynchronous && (kind == OptimizerKind::CmaEs || config.polish > 0) {
-        return Err(Failure::usage(
-            "--async: cma-es and --polish need whole batches; leave it out, or choose another \
-             --optimizer without --polish",
-        ));
-    }
-    if config.objective.single().is_some() {
-        return Ok(());
-    }
-    if !kind.takes_several_objectives() {
-        let able = OptimizerKind::all().filter(|kind| kind.takes_several_objectives());
-        let able: Vec<&str> = able.map(OptimizerKind::name).collect();
-        return Err(Failure::usage(format!(
-            "{kind} supports a single objective only; for {} choose --optimizer {}",
-            config.objective,
-            able.join(", ")
-        )));
-    }
-    if config.polish > 0 {
-        return Err(Failure::usage("--polish supports a single objective only; leave it out"));
-    }
-    Ok(())
 }

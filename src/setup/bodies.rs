@@ -62,10 +62,6 @@ pub struct PairRequest {
     /// Task for grip force, friction, fingers, limits and strategy
     #[arg(long, value_name = "T")]
     pub like: Option<String>,
-    /// Without effect, since the parts are exact within 0.02 mm
-    #[arg(long, hide = true, value_name = "N", default_value_t = 64,
-          value_parser = clap::value_parser!(u32).range(8..=1000))]
-    pub resolution: u32,
     /// Handle on a plug that has no faces to grip, width between the jaws x height x length in mm
     /// [default: 10x12x20 where one is needed]
     #[arg(long, value_name = "WxHxL")]

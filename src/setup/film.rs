@@ -1,4 +1,4 @@
-//! Recordings of trials: a page that plays them (film), a table and a plot.
+//! Recordings of trials: a page that plays them (film), and a plot.
 
 use crate::{Failure, not_stopped};
 use insertion::{Grasp, Recording, Rig, Scenario};
@@ -10,8 +10,8 @@ use study::write_file;
 /// Options of a trial: outputs made from its recording.
 #[derive(Debug, Clone, Default, clap::Args)]
 pub struct FilmRequest {
-    /// Record the trial: a page that plays it, or a table of every millisecond
-    #[arg(long, value_name = "FILE.html|.csv", value_parser = recordable)]
+    /// Record the trial: a page that plays it
+    #[arg(long, value_name = "FILE.html", value_parser = recordable)]
     pub record: Option<PathBuf>,
     /// Draw force against depth
     #[arg(long, value_name = "FILE.svg")]
@@ -44,11 +44,7 @@ impl FilmRequest {
         let film = Film { label, task, pad, recording: &recording };
         let page = || replay::page(&format!("{}, {label}", scenario.task.name), &[film]);
         if let Some(file) = &self.record {
-            let content = match &*extension(file) {
-                "csv" => replay::csv(&recording),
-                _ => page(),
-            };
-            write_file(file, &content)?;
+            write_file(file, &page())?;
         }
         if let Some(file) = &self.plot {
             write_file(file, &replay::curve_svg(&film)?)?;
@@ -67,8 +63,8 @@ impl FilmRequest {
 fn recordable(text: &str) -> Result<PathBuf, String> {
     let file = PathBuf::from(text);
     match &*extension(&file) {
-        "html" | "csv" => Ok(file),
-        _ => Err("the name must end with .html or .csv".into()),
+        "html" => Ok(file),
+        _ => Err("the name must end with .html; --log writes force and pose as CSV".into()),
     }
 }
 

@@ -8,7 +8,7 @@ use connector::draft::Size;
 use connector::mating::Mate;
 use connector::mesh::axes::{InsertionAxis, JawAxis, Unit, value};
 use connector::mesh::mated::{GAP, HANDLE, Interference, Pair, PairTask, TOLERANCE, task};
-use connector::mesh::{self, Files, SIZES, Surface, Triangle, reduced};
+use connector::mesh::{Files, SIZES, Surface, Triangle, reduced};
 use connector::plan::Family;
 use connector::seat::{RotationalPlay, rotational_play};
 use connector::write::origin;
@@ -82,8 +82,8 @@ pub fn mated(
     let mut findings: Vec<(&str, String)> = why.map(|why| ("unit", why)).into_iter().collect();
     let drawn: [Vec<Triangle>; 2] =
         triangles.map(|of| of.iter().map(|t| t.map(|p| p * unit.metres())).collect());
-    let (plug, plug_inward) = oriented(files[0], triangles[0], unit, context);
-    let (socket, socket_inward) = oriented(files[1], triangles[1], unit, context);
+    let (plug, plug_inward) = oriented(triangles[0], unit);
+    let (socket, socket_inward) = oriented(triangles[1], unit);
     // Begun after the notes on the files, which would break the line of a spinner.
     let _busy = context.busy("making the task from the shapes");
     let (mate, poses) = mate(files, [&plug, &socket], request, context, &mut findings)?;
@@ -373,20 +373,8 @@ fn check_sizes(
 
 /// Returns the triangles of a mesh, m, with outward normals and reduced if the mesh is large and closed; and whether
 /// its normals pointed inward.
-fn oriented(
-    file: &str,
-    triangles: &[Triangle],
-    unit: Unit,
-    context: &Context<'_>,
-) -> (Vec<Triangle>, bool) {
-    if let Some(surface) = Surface::new(triangles, unit.metres()) {
-        let (before, surface) = (surface.faces.len(), reduced(surface));
-        let after = surface.faces.len();
-        if after < before {
-            let tolerance = mesh::TOLERANCE / MM;
-            context
-                .note(&format!("{file}: {before} faces reduced to {after}, within {tolerance} mm"));
-        }
+fn oriented(triangles: &[Triangle], unit: Unit) -> (Vec<Triangle>, bool) {
+    if let Some(surface) = Surface::new(triangles, unit.metres()).map(reduced) {
         return (surface.triangles(), surface.was_inward);
     }
     let scaled = |triangle: &Triangle| triangle.map(|p| p * unit.metres());

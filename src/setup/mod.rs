@@ -25,7 +25,6 @@ use input::Place;
 use input::shipped::{Source, UNCERTAINTIES};
 use insertion::evaluation::template::{printable, within_limits};
 use insertion::evaluation::uncertainty::Uncertainty;
-use insertion::surrogate::Model;
 use insertion::{
     EngineKind, Evaluator, FingerModelKind, FingerSource, Measure, Plan, Priors, Robot, Space,
     Task, Template,
@@ -267,10 +266,4 @@ fn missing(role: &str) -> Failure {
 pub fn input(inputs: &Inputs, role: &str) -> Result<Source, Failure> {
     let text = inputs.get(role).cloned().ok_or_else(|| missing(role))?;
     Ok(Source { file: format!("inputs/{role}"), text })
-}
-
-/// Returns the stiffness model of the inputs in a study's folder.
-pub(crate) fn surrogate_of(inputs: &Inputs) -> Result<Arc<Model>, Failure> {
-    let fingers = Fingers::parse(input(inputs, FINGER).ok())?;
-    surrogate(&input(inputs, STIFFNESS_DATA)?, &fingers.file.finger)
 }

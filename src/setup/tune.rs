@@ -4,10 +4,7 @@ use super::files::robot;
 use super::request::RobotRequest;
 use crate::{Failure, layout, not_stopped};
 use connector::check::problems;
-use connector::plan::TILT_DEG;
 use connector::tune::{DEFAULT_BUDGET, Effort, Stage, Step, Tuned, Tuner, YAW_DEG, tune};
-use input::units::DEG;
-use insertion::evaluation::INDIFFERENCE_MM;
 use insertion::{Outcome, Task, Window};
 use serde_json::{Value, json};
 use std::sync::atomic::AtomicBool;
@@ -118,27 +115,6 @@ pub fn turned_text(step: &Step) -> String {
     })
 }
 
-/// Returns the reason for a recommended tilt outside the usual ones: the widest strategy that was tried with one of
-/// these; `None` if the tilt is usual.
-pub fn tilt_text(tuned: &Tuned) -> Option<String> {
-    let [least, most] = TILT_DEG;
-    let tilt_deg = |step: &Step| (step.tried.strategy.tilt / DEG * 10.0).round() / 10.0;
-    let usual = |step: &&Step| (least..=most).contains(&tilt_deg(step));
-    let kept_mm =
-        |step: &Step| step.turned_mm.map_or(step.tried.score, |mm| mm.min(step.tried.score));
-    let best = tuned.best();
-    let (tilt, own) = (tilt_deg(best), kept_mm(best));
-    let tried = tuned.steps.iter().filter(|step| usual(step) && step.tried.inserts());
-    // One that seems considerably wider was not simulated with a turned socket, because similar ones failed there.
-    let known = tried.map(kept_mm).filter(|mm| *mm <= own + INDIFFERENCE_MM);
-    let widest = match known.max_by(f64::total_cmp) {
-        Some(widest) => format!("the widest strategy found with one of those has {widest:.1} mm"),
-        None => "no strategy found with one of those inserts".to_owned(),
-    };
-    let text = format!("tilt {tilt}°, not the usual {least} to {most}°, for {own:.1} mm: {widest}");
-    (!usual(&best)).then_some(text)
-}
-
 /// Returns the ranges as text, `3.1, 3.3, 2.9 mm`; for a window whose nominal start fails, the outcome instead.
 pub fn ranges(windows: &[Window]) -> String {
     let inserts = |window: &Window| window.nominal == Outcome::Inserted;
@@ -155,32 +131,6 @@ pub fn ranges(windows: &[Window]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use connector::tune::Candidate;
-    use input::shipped::TASKS;
-
-    fn step(tilt_deg: f64, score: f64, turned_mm: Option<f64>) -> Step {
-        let mut strategy = Task::parse(TASKS[0].text, TASKS[0].file).unwrap().strategy;
-        strategy.tilt = tilt_deg * DEG;
-        let (windows, force_n, nearest, cost) = (Vec::new(), 50.0, None, 3);
-        let tried = Candidate { strategy, windows, force_n, score, nearest, cost };
-        Step { stage: Stage::Search, change: String::new(), tried, turned_mm }
-    }
-
-    #[test]
-    fn an_unusual_tilt_is_compared_with_the_usual_ones() {
-        let told = |steps: Vec<Step>| {
-            tilt_text(&Tuned { steps, best: 0, robustness: Vec::new(), windows: 0 })
-        };
-        assert_eq!(told(vec![step(5.0, 4.0, None)]), None);
-        let others = [(5.0, 4.0, None), (8.0, 7.0, Some(4.4)), (2.0, 9.0, None), (6.0, 9.0, None)]
-            .map(|(tilt_deg, score, turned_mm)| step(tilt_deg, score, turned_mm));
-        let text = told([step(1.7, 6.0, Some(5.2))].into_iter().chain(others).collect()).unwrap();
-        assert!(text.starts_with("tilt 1.7°, not the usual 5 to 10°, for 5.2 mm: "), "{text}");
-        assert!(text.ends_with("with one of those has 4.4 mm"), "{text}");
-        let text = told(vec![step(0.0, 6.0, None), step(5.0, -1.0, None)]).unwrap();
-        assert!(text.ends_with("no strategy found with one of those inserts"), "{text}");
-    }
-
     #[test]
     fn a_strategy_tried_in_two_stages_or_with_a_slower_push_is_named_once() {
         let tried = ["as it is", "start taught, +0.0 mm in y", "like a key"];

@@ -117,7 +117,7 @@ impl Ended {
             }
             Ok::<_, Failure>(())
         })?;
-        report::write(dir, answer, &setup.evaluator.surrogate)?;
+        report::write(dir, answer)?;
         Ok(found)
     }
 }

@@ -2,7 +2,6 @@
 
 use super::optimizer::optimizer;
 use super::{film, on_bench, printable, report, unusable};
-use crate::failure::bad_config;
 use crate::progress::cost;
 use crate::setup::task::{nominal_start, nominal_warnings};
 use crate::{Context, Failure, RunRequest, Setup};
@@ -19,7 +18,7 @@ use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use study::{
     Cache, CachedEvaluator, ConfirmationLog, ConfirmationStep, Confirmer, Ending, Recorded, Runner,
-    Study, StudyConfig, StudyError, StudyRecord,
+    Study, StudyError, StudyRecord,
 };
 
 /// Open study, locked against other processes.
@@ -51,7 +50,6 @@ pub struct Ended {
 
 impl OpenStudy {
     pub(crate) fn new(mut study: Study, setup: Setup, run: RunRequest) -> Result<Self, Failure> {
-        check(&study.config, &setup)?;
         let before = &study.config.conclusion;
         let mut conclusion = run.analyses(&setup, before.bench);
         conclusion.project = conclusion.project.or_else(|| before.project.clone());
@@ -154,7 +152,7 @@ impl OpenStudy {
         // Before the report page, which shows the picture of the failed trial.
         let problem = || unusable::check(&dir, &record, setup, stop).err();
         let unusable = if interrupted() { None } else { problem() };
-        report::write(&dir, &answer, &setup.evaluator.surrogate)?;
+        report::write(&dir, &answer)?;
         if interrupted() {
             return Err(Failure::Interrupted(Some(resume_hint(study))));
         }
@@ -199,26 +197,6 @@ fn short(recorded: &Recorded) -> String {
         ..=2 => recorded.design.0.iter().map(value).collect::<Vec<_>>().join(", "),
         _ => format!("evaluation {}", recorded.index),
     }
-}
-
-/// Checks that `study.toml` agrees with the input files in the folder.
-fn check(config: &StudyConfig, setup: &Setup) -> Result<(), Failure> {
-    let evaluator = &setup.evaluator;
-    let tasks = evaluator.templates.iter().map(|template| template.task.name.as_str());
-    let uncertainty = setup.uncertainty.as_ref().map(|errors| &errors.name);
-    for (key, same) in [
-        ("tasks", tasks.eq(config.tasks())),
-        ("robot", evaluator.robot.name == config.robot),
-        ("uncertainty", uncertainty == config.uncertainty.as_ref()),
-        ("space", setup.space == config.space),
-    ] {
-        if !same {
-            return Err(bad_config(format!(
-                "{key}: differs from the input files in the folder; restore the file from a copy"
-            )));
-        }
-    }
-    Ok(())
 }
 
 /// Adds the command that resumes the study to an error, unless the journal was changed.

@@ -18,7 +18,6 @@ pub fn run(open: OpenStudy, context: &Context<'_>, all: bool) -> Result<Output, 
     context.begin_study(&open.study);
     let mut ended = open.run(context)?;
     context.end();
-    ended.record.remarks().iter().for_each(|remark| context.note(&format!("warning: {remark}")));
     let answer = Answer::of(&ended.record);
     context.print(&text::ended(&ended, &answer, all))?;
     // The answer does not depend on the analyses.

@@ -2,9 +2,7 @@
 
 use super::{analysis, unusable};
 use crate::Failure;
-use crate::setup::surrogate_of;
 use input::files::{self, LARGEST_OWN};
-use insertion::surrogate::Model;
 use report::answer::Answer;
 use report::replay::{ENDS, pair_file, poster_file};
 use report::{self, PageFiles, printer};
@@ -17,8 +15,7 @@ use study::{EVALUATIONS_CSV, StudyRecord, evaluations_csv, write_own_file};
 /// If the study cannot be read or a file cannot be written.
 pub fn rewrite(dir: &Path) -> Result<StudyRecord, Failure> {
     let record = StudyRecord::load(dir)?;
-    let model = surrogate_of(&record.inputs(dir)?)?;
-    write(dir, &Answer::of(&record), &model)?;
+    write(dir, &Answer::of(&record))?;
     Ok(record)
 }
 
@@ -28,14 +25,14 @@ pub const PAGE: &str = "report.html";
 const FILE: (u32, u32) = (880, 480);
 
 /// Writes table, plots and page of a study into its folder.
-pub(crate) fn write(dir: &Path, answer: &Answer, model: &Model) -> Result<(), Failure> {
+pub(crate) fn write(dir: &Path, answer: &Answer) -> Result<(), Failure> {
     let record = answer.record;
     write_own_file(&dir.join(EVALUATIONS_CSV), &evaluations_csv(dir, record)?)?;
     write_own_file(&dir.join("convergence.svg"), &report::convergence_svg(record, FILE)?)?;
     if let Some(front) = report::front_svg(record, FILE)? {
         write_own_file(&dir.join("front.svg"), &front)?;
     }
-    write_own_file(&dir.join(PAGE), &report::page(answer, model, &page_files(dir, answer))?)?;
+    write_own_file(&dir.join(PAGE), &report::page(answer, &page_files(dir, answer))?)?;
     Ok(())
 }
 

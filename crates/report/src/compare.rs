@@ -2,14 +2,11 @@
 
 use super::chart::{Area, DrawResult, axes, legend, padded_range, render};
 use super::convergence::best_so_far;
-use super::elements::{document, figure, table};
 use super::marks::{line, stairs};
-use super::page::PLOT;
 use super::theme::{BLUE, Colour, GREEN, INK, MUTED, ORANGE, RED};
 use super::{ReportError, text_table};
 use ask_tell::statistics::{interpolated_quantile, sorted};
 use insertion::{Aggregate, Constraint};
-use maud::html;
 use plotters::prelude::*;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -182,81 +179,42 @@ fn curve(record: &StudyRecord) -> Vec<f64> {
 const HEAD: [&str; 7] = ["optimizer", "batch", "studies", "reached", "25 %", "median", "75 %"];
 
 impl OptimizerGroup {
-    /// Returns the cells below [`HEAD`]; `none` stands for an unknown quartile.
-    fn row(&self, none: &str) -> [String; 7] {
-        let [low, median, high] =
-            self.evaluations_to_target.all().map(|evaluations| number(evaluations, none));
+    /// Returns the cells below [`HEAD`].
+    fn row(&self) -> [String; 7] {
+        let number = |number: Option<f64>| number.map_or("-".to_owned(), |n| format!("{n:.1}"));
+        let [low, median, high] = self.evaluations_to_target.all().map(number);
         let counts = [self.batch, self.studies as u64, self.reached as u64];
         let [batch, studies, reached] = counts.map(|count| count.to_string());
         [self.optimizer.clone(), batch, studies, reached, low, median, high]
     }
 }
 
-fn number(number: Option<f64>, none: &str) -> String {
-    number.map_or(none.to_owned(), |number| format!("{number:.1}"))
-}
-
 /// Returns the comparison as text for a terminal.
 pub fn text(comparison: &Comparison) -> String {
     let Comparison { task, objective, best_known_mm, target_mm, groups } = comparison;
-    let table = text_table(1, HEAD, groups.iter().map(|group| group.row("-")));
+    let table = text_table(1, HEAD, groups.iter().map(OptimizerGroup::row));
     format!(
         "{task}, {objective}: best known {best_known_mm:.1} mm\n\
          evaluations to {target_mm:.1} mm ({TOLERANCE_MM} mm below the best known)\n\n{table}"
     )
 }
 
-/// Returns the comparison as a page that opens offline: the fastest optimizer, the table, and the
-/// best values so far.
-pub fn page(comparison: &Comparison) -> Result<String, ReportError> {
-    let Comparison { task, objective, best_known_mm, target_mm, groups } = comparison;
-    let late =
-        |group: &&OptimizerGroup| group.evaluations_to_target.median.unwrap_or(f64::INFINITY);
-    let mut groups: Vec<&OptimizerGroup> = groups.iter().collect();
-    groups.sort_by(|a, b| late(a).total_cmp(&late(b)));
-    let finding = match groups.first().filter(|first| late(first).is_finite()) {
-        None => format!("No optimizer reaches {target_mm:.1} mm in half of its studies"),
-        Some(first) => {
-            let (name, median) = (&first.optimizer, late(first));
-            format!("{name} reaches {target_mm:.1} mm first: after {median:.1} evaluations")
-        }
-    };
-    let rows = groups.iter().map(|group| group.row("–").to_vec());
-    let convergence = render("the comparison", PLOT, |area| draw(area, comparison, ""))?;
-    let caption = "Best so far: the median as a line, the quartiles as a band.";
-    let body = html! {
-        main {
-            header {
-                p.muted { (task) ", " (objective) }
-                h1 { (finding) }
-                p.lead {
-                    "Best known " (format!("{best_known_mm:.1}")) " mm; evaluations are counted up to \
-                    " (TOLERANCE_MM) " mm below it."
-                }
-            }
-            section { h2 { "Evaluations" } (table(&HEAD, rows)) }
-            section { h2 { "Convergence" } (figure(&convergence, "best so far by optimizer", caption)) }
-        }
-    };
-    Ok(document(&format!("{task}: optimizers compared"), body))
-}
-
 const COLOURS: [Colour; 6] = [BLUE, ORANGE, GREEN, RED, MUTED, INK];
 
 /// Plots the best so far of each optimizer: the median as a line and the quartiles as a band.
 pub fn svg(comparison: &Comparison) -> Result<String, ReportError> {
-    let title = format!("{}: best so far, median and quartiles over seeds", comparison.task);
-    render("the comparison", (880, 480), |area| draw(area, comparison, &title))
+    render("the comparison", (880, 480), |area| draw(area, comparison))
 }
 
-fn draw(area: &Area<'_>, comparison: &Comparison, title: &str) -> DrawResult {
+fn draw(area: &Area<'_>, comparison: &Comparison) -> DrawResult {
+    let title = format!("{}: best so far, median and quartiles over seeds", comparison.task);
     let groups = &comparison.groups;
     let longest = groups.iter().map(|g| g.best_so_far_mm.len()).max().unwrap_or(0).max(1) as f64;
     let values = groups.iter().flat_map(|g| g.best_so_far_mm.iter().flat_map(|q| q.all()));
     let range = padded_range(values.flatten().chain([comparison.best_known_mm]), 0.06);
     let label = format!("{} (mm)", comparison.objective);
     let x = ("number of evaluations", 0.0..longest * 1.02 + 0.5);
-    let mut chart = axes(area, title, x, (&label, range))?;
+    let mut chart = axes(area, &title, x, (&label, range))?;
     let coloured = || groups.iter().zip(COLOURS.iter().cycle());
     for (group, colour) in coloured().filter(|(group, _)| group.studies > 1) {
         let mut outline = quartile(group, 0);

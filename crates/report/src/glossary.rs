@@ -3,7 +3,7 @@
 use maud::{Markup, html};
 
 /// Terms, each with its explanation, which is also a passage of `start.md` or `objectives.md` in `docs/guide`.
-pub(crate) const TERMS: [(&str, &str); 13] = [
+pub(crate) const TERMS: [(&str, &str); 12] = [
     (
         "firm",
         "between the outermost starts that insert in all repeats, with friction, start and time step \
@@ -32,11 +32,6 @@ pub(crate) const TERMS: [(&str, &str); 13] = [
         "robust range",
         "range under sampled errors: mean minus one standard deviation, or the mean of the lower \
          tail",
-    ),
-    (
-        "remote centre",
-        "the point at which a force translates the fingertip without rotating it, and about which \
-         a moment rotates it",
     ),
 ];
 

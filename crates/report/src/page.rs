@@ -7,7 +7,6 @@ use super::{
     ReportError, bench, convergence, explore, front, levers, map, overview, provenance, shape, ties,
 };
 use crate::answer::{Answer, command, expectation, lines};
-use insertion::surrogate::Model;
 use maud::{Markup, html};
 use std::path::Path;
 
@@ -15,10 +14,9 @@ use std::path::Path;
 /// a phone.
 pub(super) const PLOT: (u32, u32) = (356, 300);
 
-/// Returns the report of a study as an HTML page that works offline. `model` is the stiffness model of
-/// the study.
-pub fn page(answer: &Answer, model: &Model, files: &PageFiles) -> Result<String, ReportError> {
-    let sections = sections(answer, model, files)?;
+/// Returns the report of a study as an HTML page that works offline.
+pub fn page(answer: &Answer, files: &PageFiles) -> Result<String, ReportError> {
+    let sections = sections(answer, files)?;
     let body = html! {
         main {
             (overview::screen(answer, files))
@@ -52,11 +50,7 @@ pub fn card(answer: &Answer, dir: &Path) -> String {
 type Section = (&'static str, String, Markup);
 
 /// Returns id, title and body of each section that is not empty.
-fn sections(
-    answer: &Answer,
-    model: &Model,
-    files: &PageFiles,
-) -> Result<Vec<Section>, ReportError> {
+fn sections(answer: &Answer, files: &PageFiles) -> Result<Vec<Section>, ReportError> {
     let record = answer.record;
     let section = |id, title: &str, body: Option<Markup>| Some((id, title.to_owned(), body?));
     let set_title = if record.on_bench.is_none() { "Ties" } else { "Ties by simulation alone" };
@@ -79,8 +73,7 @@ fn sections(
         section("maps", "Capture maps", maps),
         section("explore-views", "All designs", explore::section(answer, &files.dir)),
         section("convergence", "Convergence", Some(convergence::section(record, PLOT)?)),
-        section("failures", "How the trials ended", Some(provenance::outcomes(record))),
-        section("provenance", "Provenance", Some(provenance::section(answer, model))),
+        section("provenance", "Provenance", Some(provenance::section(answer))),
     ];
     Ok(sections.into_iter().flatten().collect())
 }

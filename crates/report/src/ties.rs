@@ -16,13 +16,12 @@ pub(super) fn section(answer: &Answer) -> Option<Markup> {
     let found = answer.recommended.as_ref()?.ties.as_ref()?;
     let named = answer.design_to_print()?.index;
     let mut designs = found.designs.clone();
-    // Order: design to print, safe choice, designs with another reason, all others; within each group by loss.
+    // Order: design to print, safe choice, all others by loss.
     let safe = found.safe.as_ref().map(|safe| safe.design.index);
     let order = |recorded: &Recorded| match recorded.index {
         index if index == named => 0,
         index if Some(index) == safe => 1,
-        index if found.alternatives.iter().any(|(_, other, ..)| other.index == index) => 2,
-        _ => 3,
+        _ => 2,
     };
     designs.sort_by(|a, b| order(a.0).cmp(&order(b.0)).then(a.1.total_cmp(&b.1)));
     let millimetres = answer.record.config.objective.first().unit() == "mm";
@@ -62,9 +61,5 @@ fn reasons(answer: &Answer, found: &Ties, recorded: &Recorded, named: u64) -> St
     let best = if recommended { "recommended" } else { "best in simulation" };
     let named = (recorded.index == named).then_some(best);
     let safe = found.safe.as_ref().filter(|safe| is_recorded(&safe.design)).map(|safe| safe.name());
-    let others = found.alternatives.iter().filter(|(_, other, ..)| is_recorded(other));
-    let mut reasons: Vec<_> =
-        named.into_iter().chain(safe).chain(others.map(|(why, ..)| *why)).collect();
-    reasons.dedup();
-    reasons.join(", ")
+    named.into_iter().chain(safe).collect::<Vec<_>>().join(", ")
 }

@@ -152,7 +152,9 @@ impl StudyConfig {
         let kind: OptimizerKind =
             self.optimizer.parse().map_err(|error| format!("optimizer: {error}"))?;
         if self.objective.single().is_none() && !kind.takes_several_objectives() {
-            return Err(format!("optimizer: {kind} accepts one objective only"));
+            let able = OptimizerKind::all().filter(|kind| kind.takes_several_objectives());
+            let able = able.map(OptimizerKind::name).collect::<Vec<_>>().join(", ");
+            return Err(format!("optimizer: {kind} accepts one objective only; several: {able}"));
         }
         if self.settles && !self.can_settle() {
             let needs = "the optimizer gp and the objective range or centred-range alone";

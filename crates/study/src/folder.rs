@@ -57,8 +57,6 @@ pub struct Study {
     pub evaluations: Vec<Recorded>,
     /// Segments of equal provenance.
     pub(super) segments: Vec<Segment>,
-    /// Number of records of other programs in the journal.
-    foreign: usize,
     pub(super) journal: Journal,
     dir: PathBuf,
     _lock: Lock,
@@ -134,9 +132,9 @@ impl Study {
             sync.map_err(StudyError::io("sync the folder", dir))?;
         }
         files::remove_abandoned(dir);
-        let Contents { evaluations, segments, foreign } = contents;
+        let Contents { evaluations, segments } = contents;
         let dir = dir.to_owned();
-        Ok(Study { config, evaluations, segments, foreign, journal, dir, _lock: lock })
+        Ok(Study { config, evaluations, segments, journal, dir, _lock: lock })
     }
 
     /// Sets the provenance of further evaluations; begins a new segment in the journal if it differs.
@@ -220,8 +218,7 @@ impl Study {
     /// Returns a copy of the study with its analyses.
     pub fn record(&self) -> StudyRecord {
         let (evaluations, segments) = (self.evaluations.clone(), self.segments.clone());
-        let contents = Contents { evaluations, segments, foreign: self.foreign };
-        StudyRecord::new(&self.dir, self.config.clone(), contents)
+        StudyRecord::new(&self.dir, self.config.clone(), Contents { evaluations, segments })
     }
 }
 
@@ -237,7 +234,7 @@ impl StudyRecord {
     }
 
     fn new(dir: &Path, config: StudyConfig, contents: Contents) -> Self {
-        let Contents { evaluations, segments, foreign } = contents;
+        let Contents { evaluations, segments } = contents;
         let inputs = read_inputs(dir, &segments).unwrap_or_default();
         let finger =
             inputs.get(FINGER).and_then(|text| FingerFile::parse(text, "inputs/finger").ok());
@@ -258,7 +255,6 @@ impl StudyRecord {
             config,
             segments,
             evaluations,
-            foreign,
             walked,
             finger,
             limits,

@@ -5,11 +5,10 @@
 //! journal is opened. Damage anywhere else is an error.
 
 use super::error::LineError;
-use super::lock::{Lock, UNKNOWN_OWNER};
 use super::{Recorded, Segment, StudyConfig, StudyError};
 use super::{header, line};
 use input::files::{self, LARGEST_JOURNAL};
-use std::fs::{self, File, TryLockError};
+use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
@@ -19,7 +18,7 @@ pub const JOURNAL_FILE: &str = "journal.jsonl";
 /// Journal that is open for writing.
 pub struct Journal {
     pub(super) path: PathBuf,
-    file: Lock,
+    file: File,
     /// Length of the complete, synced lines, bytes.
     len: u64,
     /// Whether a write failed; later ones are then refused.
@@ -32,30 +31,19 @@ pub struct Contents {
     pub evaluations: Vec<Recorded>,
     /// Segments of equal provenance; the first begins at 0.
     pub segments: Vec<Segment>,
-    /// Number of records that other programs wrote (notes of Optuna's dashboard); they are ignored.
-    pub foreign: usize,
 }
 
 impl Journal {
-    /// Opens and locks the journal of the study in `dir`, or begins it if there is none, and returns its contents.
+    /// Opens the journal of the study in `dir`, or begins it if there is none, and returns its contents.
     ///
     /// # Errors
-    /// If another process has locked it, it is damaged, or it cannot be read or written.
+    /// If it is damaged, or cannot be read or written.
     pub fn open(dir: &Path, config: &StudyConfig) -> Result<(Journal, Contents), StudyError> {
         let path = dir.join(JOURNAL_FILE);
         let file = File::options().read(true).append(true).create(true).open(&path);
-        let file = Lock(file.map_err(StudyError::io("open", &path))?);
-        // The folder's `.lock` may be removed. On other systems a lock would block readers.
-        if cfg!(unix) {
-            file.0.try_lock().map_err(|error| match error {
-                TryLockError::WouldBlock => {
-                    StudyError::Locked { dir: dir.to_owned(), owner: UNKNOWN_OWNER.to_owned() }
-                }
-                TryLockError::Error(error) => StudyError::io("lock", &path)(error),
-            })?;
-        }
+        let file = file.map_err(StudyError::io("open", &path))?;
         let bytes =
-            files::read_up_to(&file.0, LARGEST_JOURNAL).map_err(StudyError::io("read", &path))?;
+            files::read_up_to(&file, LARGEST_JOURNAL).map_err(StudyError::io("read", &path))?;
         let (contents, len) = parse(&bytes, &path, config)?;
         let mut journal = Journal { path, file, len, broken: false };
         if len < bytes.len() as u64 {
@@ -74,16 +62,12 @@ impl Journal {
         self.unchanged().map_err(changed)
     }
 
-    /// Checks that the path leads to the open file, and its length; the error is the change.
+    /// Checks that the file is there and has the length that was written; the error is the change.
     fn unchanged(&self) -> Result<(), String> {
-        let inaccessible = |error: io::Error| format!("is no longer accessible: {error}");
-        let found = fs::symlink_metadata(&self.path).map_err(|error| match error.kind() {
+        let found = fs::metadata(&self.path).map_err(|error| match error.kind() {
             io::ErrorKind::NotFound => "was removed or renamed".to_owned(),
-            _ => inaccessible(error),
+            _ => format!("is no longer accessible: {error}"),
         })?;
-        if !files::is_open_file(&found, &self.file.0).map_err(inaccessible)? {
-            return Err("was replaced by another file".to_owned());
-        }
         let (bytes, written) = (found.len(), self.len);
         if bytes == written {
             return Ok(());
@@ -98,8 +82,8 @@ impl Journal {
             return Err(self.failed(io::Error::other("an earlier write failed")));
         }
         self.check()?;
-        let appended = self.file.0.write_all(lines.as_bytes());
-        if let Err(error) = appended.and_then(|()| self.file.0.sync_data()) {
+        let appended = self.file.write_all(lines.as_bytes());
+        if let Err(error) = appended.and_then(|()| self.file.sync_data()) {
             self.broken = true;
             // If this fails, too, the torn line is cut off when the journal is opened again.
             let _ = self.truncate();
@@ -111,8 +95,8 @@ impl Journal {
 
     /// Truncates the file to its complete lines.
     fn truncate(&self) -> io::Result<()> {
-        self.file.0.set_len(self.len)?;
-        self.file.0.sync_data()
+        self.file.set_len(self.len)?;
+        self.file.sync_data()
     }
 
     fn failed(&self, source: io::Error) -> StudyError {
@@ -138,7 +122,7 @@ fn parse(bytes: &[u8], path: &Path, config: &StudyConfig) -> Result<(Contents, u
     let whole = bytes.iter().rposition(|&byte| byte == b'\n').map_or(0, |last| last + 1);
     let lines: Vec<&[u8]> = bytes[..whole].split_inclusive(|&byte| byte == b'\n').collect();
     let beginning = Segment { first: 0, provenance: config.provenance.clone() };
-    let mut contents = Contents { evaluations: Vec::new(), segments: vec![beginning], foreign: 0 };
+    let mut contents = Contents { evaluations: Vec::new(), segments: vec![beginning] };
     let [first, second, rest @ ..] = lines.as_slice() else {
         // The process was killed while it wrote the header; anything else must not be overwritten.
         let header = header::encode(config).map_err(|error| foreign(error.to_string()))?;
@@ -165,11 +149,10 @@ fn parse(bytes: &[u8], path: &Path, config: &StudyConfig) -> Result<(Contents, u
 }
 
 impl Contents {
-    /// Adds a line after the header.
+    /// Adds a line after the header. Records of other programs (notes of Optuna's dashboard) are ignored.
     fn add(&mut self, line: &str) -> Result<(), LineError> {
         let expected = self.evaluations.len() as u64;
         if line::is_foreign(line) {
-            self.foreign += 1;
             return Ok(());
         }
         match header::decode_segment(line)? {

@@ -6,11 +6,9 @@ use std::io::{Read, Seek, Write};
 use std::path::Path;
 
 const LOCK_FILE: &str = ".lock";
-/// Owner of a lock whose process ID cannot be read.
-pub(super) const UNKNOWN_OWNER: &str = "of unknown number";
 
 /// Locked file. The system releases the lock when the process ends.
-pub(super) struct Lock(pub(super) File);
+pub(super) struct Lock(File);
 
 impl Drop for Lock {
     fn drop(&mut self) {
@@ -33,7 +31,7 @@ pub(super) fn lock(dir: &Path) -> Result<Lock, StudyError> {
             let mut owner = String::new();
             // Only for the message: on some systems a locked file cannot be read.
             let _ = file.read_to_string(&mut owner);
-            let owner = if owner.is_empty() { UNKNOWN_OWNER.to_owned() } else { owner };
+            let owner = if owner.is_empty() { "of unknown number".to_owned() } else { owner };
             return Err(StudyError::Locked { dir: dir.to_owned(), owner });
         }
         Err(TryLockError::Error(error)) => return Err(StudyError::io("lock", &path)(error)),

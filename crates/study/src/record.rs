@@ -29,8 +29,6 @@ pub struct StudyRecord {
     pub segments: Vec<Segment>,
     /// Evaluations, by index: `evaluations[i].index == i`.
     pub evaluations: Vec<Recorded>,
-    /// Number of records of other programs in the journal; they are ignored.
-    pub foreign: usize,
     /// Walked designs (see [`Walked`]), best first.
     pub walked: Vec<Walked>,
     /// Finger file, if the fingers were computed.
@@ -152,13 +150,6 @@ impl Recorded {
 }
 
 impl StudyRecord {
-    /// Returns warnings about the journal.
-    pub fn remarks(&self) -> Vec<String> {
-        let foreign =
-            || format!("records of other programs in the journal, ignored: {}", self.foreign);
-        (self.foreign > 0).then(foreign).into_iter().collect()
-    }
-
     /// Returns whether the search or the confirmation has not ended: it was interrupted, or is running. A polish may
     /// converge at any number of evaluations, so that its end is not known.
     pub fn unfinished(&self) -> bool {

@@ -213,11 +213,6 @@ fn text(
          body          {wide:.1} x {high:.1} mm between the pads (the task's y, x), up to its z = {long:.1} mm when seated\n"
     );
     text += &lines(findings);
-    for (name, inward) in ["plug", "socket"].into_iter().zip(mated.inward) {
-        if inward {
-            text.push_str(&format!("normals       of the {name} pointed inward; reversed\n"));
-        }
-    }
     text.extend(tuned.map(|tuned| brief("strategy", tuned)));
     text += &checked.text_of_new();
     wrapped(&text)

@@ -17,14 +17,10 @@ use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 use study::write_file;
 
-/// Default dimensions: a USB-C plug.
-const EXAMPLE: (&str, f64, &str) = ("8.25x2.4x6.65", 0.1, "12x6.5x20");
-
 /// Create a commented task file from a few dimensions, or from another task
 ///
 /// With --plug, --round or --pins, start, tilt, strokes and success depth are derived from the geometry; with --like
 /// as well, friction and grasp force are those of that task. With --like alone the file is a copy of that task.
-/// Without any of these the task is a USB-C plug.
 #[derive(Debug, clap::Args)]
 #[command(
     after_help = "Example: optimize task new usb-c --plug 8.25x2.4x6.65 --clearance 0.1 --body 12x6.5x20"
@@ -110,7 +106,7 @@ fn drafted(
     like: Option<&TaskFile>,
     stop: &AtomicBool,
 ) -> Result<(String, Option<Tuned>), Failure> {
-    let (size, example) = dimensions(request)?;
+    let size = dimensions(request)?;
     let task =
         draft::draft(&request.name, &size, like.map(|like| &like.task)).map_err(Failure::usage)?;
     let body = size.body.map_or(String::new(), |body| format!(" --body {}", text(&body)));
@@ -138,9 +134,6 @@ fn drafted(
             2.0 * hole.deviation / MM
         ));
     }
-    if example {
-        head.push("No dimensions were given: these are of a USB-C plug.".to_owned());
-    }
     let (task, tuned) = tune_new(task, &request.robot, stop)?;
     Ok((write::task(&task, &Notes { head, ..Notes::default() }), tuned))
 }
@@ -158,20 +151,15 @@ fn tip(request: &Request) -> Option<Size> {
     request.plug.or(request.round).or(pins(request).map(|pins| pins.size()))
 }
 
-/// Returns the dimensions, and whether they are those of the example.
-fn dimensions(request: &Request) -> Result<(Dimensions, bool), Failure> {
-    if let (Some(plug), Some(clearance)) = (tip(request), request.clearance) {
-        let (clearance, pins) = (clearance * MM, pins(request));
-        let body = request.body.or(pins.map(|pins| pins.body()));
-        let round = request.round.is_some();
-        let (key, chamfer) = (request.key, request.chamfer_mm.map(|mm| mm * MM));
-        return Ok((Dimensions { plug, pins, round, clearance, key, chamfer, body }, false));
-    }
-    let (plug, clearance_mm, body) = EXAMPLE;
-    let parse = |text: &str| text.parse::<Size>().map_err(Failure::usage);
-    let (plug, body) = (parse(plug)?, Some(parse(body)?));
-    let (clearance, key, chamfer) = (clearance_mm * MM, None, None);
-    Ok((Dimensions { plug, pins: None, round: false, clearance, key, chamfer, body }, true))
+/// Returns the dimensions.
+fn dimensions(request: &Request) -> Result<Dimensions, Failure> {
+    let (Some(plug), Some(clearance)) = (tip(request), request.clearance) else {
+        return Err(Failure::usage("give --plug, --round or --pins, with --clearance; or --like"));
+    };
+    let (clearance, pins) = (clearance * MM, pins(request));
+    let body = request.body.or(pins.map(|pins| pins.body()));
+    let (key, chamfer) = (request.key, request.chamfer_mm.map(|mm| mm * MM));
+    Ok(Dimensions { plug, pins, round: request.round.is_some(), clearance, key, chamfer, body })
 }
 
 fn text(size: &Size) -> String {

@@ -2,7 +2,7 @@
 
 use crate::layout::{lines, wrapped};
 use crate::setup::files::{check_is_new, robot};
-use crate::setup::tune::{outcome, ranges, step_json, tilt_text, tried, turned_text};
+use crate::setup::tune::{outcome, ranges, step_json, tried, turned_text};
 use crate::setup::words::parse_number;
 use crate::{Context, Failure, Output, RobotRequest, TaskFile, TaskSource, command, not_stopped};
 use connector::check::problems;
@@ -11,7 +11,6 @@ use connector::{picture, rewrite};
 use input::Place;
 use input::shipped::{Source, TASKS};
 use input::units::{DEG, MM, N_PER_MM};
-use insertion::evaluation::INDIFFERENCE_MM;
 use insertion::task::parts_file::without_parts;
 use insertion::task::{Limits, is_of_name};
 use insertion::{Finger, Robot, Strategy, Task, Window};
@@ -301,13 +300,6 @@ fn text(done: &TunedTask<'_>) -> String {
             let ranges = ranges(&after.windows);
             let text = format!("{}: {ranges} about the written start{turned}", best.change);
             all.push(line("chosen", text));
-            all.extend(tilt_text(tuned).map(|why| line("", why)));
-            if tuned.steps.iter().any(|step| step.tried.score > best.tried.score) {
-                let why = format!(
-                    "no other strategy checked has {INDIFFERENCE_MM} mm more with the socket turned, too"
-                );
-                all.push(line("", why));
-            }
             all.push(line("push", push_text(done, after.force_n)));
             all.extend(tuned.robustness.iter().enumerate().map(|(i, kept)| {
                 let least = format!("at least {:.1} mm", kept.least_range_mm);

@@ -297,10 +297,6 @@ pub fn recommended(answer: &Answer, found: &Recommended) -> Vec<Line> {
     if answer.record.on_bench.is_some() {
         lines.extend(simulated(answer, found));
     }
-    let alternatives = found.ties.iter().flat_map(|ties| &ties.alternatives);
-    lines.extend(alternatives.map(|(reason, found, value, unit)| {
-        line(&format!("  {reason}"), format!("{}: {value:.1} {unit}", evaluated(found)))
-    }));
     lines.extend(raced(answer));
     lines
 }

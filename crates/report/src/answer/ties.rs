@@ -4,7 +4,6 @@ use super::force::ExcessForce;
 use super::trust::{MeasuredFinger, range_mm};
 use ask_tell::process::distance2;
 use ask_tell::statistics::span;
-use input::units::N_PER_MM;
 use insertion::evaluation::objective::Measure;
 use parameters::label;
 use study::{Recorded, StudyRecord};
@@ -26,9 +25,6 @@ pub struct Ties<'a> {
     /// Share of the space that is nearer to a tied design than to any other design, 0 to 1. The number of tied designs
     /// alone is misleading, since a search samples good regions more densely.
     pub share: f64,
-    /// Designs with the least force, the least and the largest stiffness along y, each with label, value and unit;
-    /// empty if the recommended design has no ties.
-    pub alternatives: Vec<(&'static str, &'a Recorded, f64, &'static str)>,
     /// The safe choice; `None` if the recommended design has no ties, or all exceed a force limit.
     pub safe: Option<SafeChoice<'a>>,
 }
@@ -87,19 +83,7 @@ impl<'a> Ties<'a> {
             walked.find(|walked| walked.index == found.index).unwrap_or(found)
         };
         let force = |r: &'a Recorded| record.measure(walked(r), Measure::PeakForce);
-        let stiffness = |r: &Recorded| r.stiffness.compliance.mean / N_PER_MM;
         let tied = if designs.len() < 2 { &[] } else { &designs[..] };
-        let forces = tied.iter().filter_map(|&(design, _)| Some((design, force(design)?)));
-        let stiffnesses = || tied.iter().map(|&(design, _)| (design, stiffness(design)));
-        let by_value = |a: &(&Recorded, f64), b: &(&Recorded, f64)| a.1.total_cmp(&b.1);
-        let extremes = [
-            ("least force", forces.min_by(by_value), "N"),
-            ("softest", stiffnesses().min_by(by_value), "N/mm"),
-            ("stiffest", stiffnesses().max_by(by_value), "N/mm"),
-        ];
-        let alternatives = extremes.into_iter().filter_map(|(reason, extreme, unit)| {
-            extreme.map(|(design, value)| (reason, design, value, unit))
-        });
         let allowed =
             |(r, _): &&(&'a Recorded, f64)| ExcessForce::of(record, &walked(r).tasks()).is_none();
         let safe = |&(design, loss): &(&'a Recorded, f64)| SafeChoice {
@@ -116,8 +100,8 @@ impl<'a> Ties<'a> {
         let least_force = simulated.min_by(|a, b| a.0.total_cmp(&b.0));
         let safe = widest.or(least_force).map(|(_, safe)| safe);
         let (spread, share) = (spread(record, &designs), share(record, &designs));
-        let (loss_within, alternatives) = (loss_within(&spread, &others), alternatives.collect());
-        Ties { spread, loss_within, narrow, share, alternatives, safe, designs }
+        let loss_within = loss_within(&spread, &others);
+        Ties { spread, loss_within, narrow, share, safe, designs }
     }
 }
 

@@ -23,8 +23,6 @@ use plotters::prelude::Color;
 /// Largest number of plotted points of a curve, and number of samples before the first contact (0.1 s).
 const POINTS: usize = 400;
 const AIR: usize = 50;
-/// Ratio of the misfit after identification to that before, above which the page mentions it.
-const WORSE: f64 = 1.1;
 
 /// Returns the page: parameters ("numbers") of the cell, robot and probes, and every attempt, measured and simulated.
 pub fn html(result: &IdentificationResult) -> String {
@@ -72,7 +70,6 @@ pub fn html(result: &IdentificationResult) -> String {
                 }
                 h3 { "All attempts" }
                 (misfit(&found.compared))
-                @if let Some(sentence) = worse(&found.compared) { p.muted { (sentence) } }
                 @for one in &found.compared { (attempt(one)) }
             }
         }
@@ -124,28 +121,16 @@ pub(super) fn misfit_of_fit(Smoothed { misfit, compared, .. }: &Smoothed) -> Str
     }
 }
 
-/// Returns the parameters by the origin of their values, the agreement of the outcomes, and the misfit.
+/// Returns the agreement of the outcomes, and the misfit.
 fn summary(found: &Identified) -> Vec<(String, String)> {
-    let named = |from: ValueOrigin| {
-        let of = found.unknowns.iter().filter(|one| one.from == from);
-        let identified = [ValueOrigin::Formula, ValueOrigin::Fit].contains(&from);
-        let name = |Unknown { posterior, .. }: &Unknown| match identified {
-            true => format!("{} {}", posterior.name, amount(posterior)),
-            false => posterior.name.clone(),
-        };
-        let names: Vec<String> = of.map(name).collect();
-        (!names.is_empty()).then(|| (origin(from).to_owned(), names.join(", ")))
-    };
-    let all =
-        [ValueOrigin::Formula, ValueOrigin::Fit, ValueOrigin::Prior, ValueOrigin::Files].map(named);
     let (outcomes, worse) = outcomes(&found.compared);
     let outcomes = if worse { format!("{outcomes}; {FEWER}") } else { outcomes };
-    let more = [
+    let rows = [
         ("outcomes", outcomes),
         ("misfit in the fit", misfit_of_fit(&found.smoothed)),
         ("ranges", RANGES.to_owned()),
     ];
-    all.into_iter().flatten().chain(more.map(|(name, text)| (name.to_owned(), text))).collect()
+    rows.map(|(name, text)| (name.to_owned(), text)).into()
 }
 
 /// Returns a row of the table of parameters.
@@ -299,20 +284,6 @@ fn misfit(compared: &[Compared]) -> Markup {
     };
     let all = misfits(compared);
     table(&["misfit", "fx", "fy", "fz"], all.chunk_by(|a, b| a.phase == b.phase).map(row))
-}
-
-/// Returns a sentence on the components of the force whose misfit is larger with the identified parameters.
-fn worse(compared: &[Compared]) -> Option<String> {
-    let larger = |one: &Misfit| one.before > 0.0 && one.after > WORSE * one.before;
-    let all = misfits(compared).into_iter().filter(larger);
-    let names: Vec<String> = all.map(|one| format!("{} {}", one.phase, one.axis)).collect();
-    (!names.is_empty()).then(|| {
-        format!(
-            "Larger with the identified numbers: {}. The fit minimizes the misfit of all components together, \
-             and a curve with the files' numbers may be compared for a shorter time.",
-            names.join(", ")
-        )
-    })
 }
 
 /// Draws one component of the force over time.

@@ -1,13 +1,11 @@
-//! Recorded trials as a page that plays them, a CSV table, and a plot of force against depth.
+//! Recorded trials as a page that plays them, and as a plot of force against depth.
 
 mod curve;
 mod film;
-mod table;
 
 use super::elements::styled;
 use super::explore::embedded;
 pub use curve::svg as curve_svg;
-pub use table::csv;
 
 use insertion::{OffsetStep, Pad, Recording, Task};
 use maud::{PreEscaped, html};

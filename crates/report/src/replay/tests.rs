@@ -1,4 +1,4 @@
-//! Page, table and plot of synthetic recordings.
+//! Page and plot of synthetic recordings.
 
 use super::*;
 use contact::ContactPoint;
@@ -85,20 +85,6 @@ fn the_last_frame_has_the_outcome() {
     let json = film::data(&film("a", &task, &recording));
     let times = json["time"].as_array().unwrap();
     assert!(times[times.len() - 1].as_f64() >= json["decided_s"].as_f64(), "{json}");
-}
-
-#[test]
-fn the_table_has_a_line_per_millisecond_and_units() {
-    let table = csv(&recording());
-    let mut lines = table.lines();
-    let header: Vec<&str> = lines.next().unwrap().split(',').collect();
-    assert!(header.contains(&"depth_mm") && header.contains(&"force_n"));
-    assert_eq!(lines.clone().count(), 1001);
-    let last: Vec<&str> = lines.last().unwrap().split(',').collect();
-    assert_eq!(last.len(), header.len());
-    let column = |name: &str| last[header.iter().position(|h| *h == name).unwrap()];
-    let found = ["time_s", "force_n", "depth_mm", "finger_plus_y_bend_y_mm"].map(column);
-    assert_eq!(found, ["1.0000", "20.0000", "10.0000", "-0.5000"]);
 }
 
 #[test]

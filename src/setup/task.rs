@@ -12,7 +12,7 @@ use input::Place;
 use input::shipped::{SPACES, Source};
 use input::units::N_PER_MM;
 use insertion::stiffness::representative_designs;
-use insertion::{EngineKind, Finger, Grasp, Outcome, Recording, Robot, Search, Space, Task, Trial};
+use insertion::{EngineKind, Finger, Grasp, Outcome, Recording, Robot, Space, Task, Trial};
 use report::answer::words::mating_force;
 use serde_json::{Value, json};
 use std::sync::atomic::AtomicBool;

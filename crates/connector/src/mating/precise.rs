@@ -4,7 +4,7 @@ use super::Mate;
 use super::cells::CellSet;
 use super::frame::{Parts, rotations_to_z, turns};
 use super::map::{Envelope, HeightMap, Window, bounds, rest, touching};
-use super::refine::{Fine, Pose};
+use super::refine::{Fine, Pose, TOLERANCE};
 use super::search::Scene;
 use crate::body::width;
 use crate::mesh::Triangle;
@@ -152,11 +152,32 @@ impl PlayMeasurement<'_> {
         f64::from(high - low) * CELL
     }
 
-    /// Returns the height at which the plug rests, m.
-    fn rest(&self) -> f64 {
+    /// Measures the play at a height, m, up to `max_play` to either side, without the cells that interfere, and the
+    /// height at which the plug then rests.
+    fn at(mut self, interfering: Vec<[i32; 2]>, height: f64, max_play: f64) -> Measured {
+        self.leave_out(interfering);
+        let mut play_m = [0.0; 2];
+        for round in 0..ROUNDS[1] {
+            for (axis, play) in play_m.iter_mut().enumerate() {
+                if round < ROUNDS[0] || *play == 0.0 {
+                    *play = self.centre(axis, height, max_play);
+                }
+            }
+        }
         let [upper, lower] = self.maps(0);
-        f64::from(rest(&upper, &lower, [0; 2], f32::MAX))
+        let rest = f64::from(rest(&upper, &lower, [0; 2], f32::MAX));
+        Measured { shift: self.shift, play_m, rest }
     }
+}
+
+/// Play of a plug in its seat.
+struct Measured {
+    /// Shift of the plug to the middle of its play, m.
+    shift: [f64; 2],
+    /// Play along x and y, m.
+    play_m: [f64; 2],
+    /// Height at which the plug rests, m.
+    rest: f64,
 }
 
 /// Returns the shift by an offset along an axis.
@@ -170,41 +191,50 @@ fn along(axis: usize, offset: i32) -> [i32; 2] {
 pub fn mate(parts: &Parts, scene: &Scene, pose: &Pose, max_play: f64) -> Mate {
     let fine = Fine::new(scene, pose, max_play);
     let (socket, plug) = (&scene.sockets[pose.out], &scene.plugs[pose.turn]);
-    let sprung = fine.between_springs(pose);
-    let walls = sprung.as_ref().map(|(_, walls)| *walls);
-    let (stopped, pose) = (pose.z, sprung.as_ref().map_or(pose, |(between, _)| between));
-    let (window, step, shift) = (fine.window, fine.step, pose.shift);
-    let (interfering, around) = (Vec::new(), Default::default());
-    let interference = fine.interference(pose);
-    let mut measurement = PlayMeasurement {
-        socket,
-        plug,
-        window,
-        interfering,
-        interference,
-        around,
-        step,
-        shift,
-        walls,
+    let measured = |pose: &Pose, walls| {
+        let (window, step, shift) = (fine.window, fine.step, pose.shift);
+        let (interfering, around) = (Vec::new(), Default::default());
+        let interference = fine.interference(pose);
+        let measurement = PlayMeasurement {
+            socket,
+            plug,
+            window,
+            interfering,
+            interference,
+            around,
+            step,
+            shift,
+            walls,
+        };
+        measurement.at(fine.overlap(pose), pose.z + LIFT, 2.0 * max_play)
     };
-    measurement.leave_out(fine.overlap(pose));
-    let height = pose.z + LIFT;
-    let mut play_m = [0.0; 2];
-    for round in 0..ROUNDS[1] {
-        for (axis, play) in play_m.iter_mut().enumerate() {
-            if round < ROUNDS[0] || *play == 0.0 {
-                *play = measurement.centre(axis, height, 2.0 * max_play);
-            }
+    let lowered = fine.lowered(pose);
+    let found = match &lowered {
+        Some((lower, walls)) => measured(lower, Some(*walls)),
+        None => {
+            let found = measured(pose, None);
+            let overlaps = !fine.overlap(pose).is_empty();
+            // Springs hold the plug to a wall, which leaves no play or, without them, too much.
+            let pressed = |(_, walls): &(Pose, [f64; 2])| {
+                let free = |axis: usize| {
+                    found.play_m[axis] > 0.0 && found.play_m[axis] <= walls[axis] + 2.0 * TOLERANCE
+                };
+                overlaps && !(free(0) && free(1))
+            };
+            let between = fine.between_walls(pose.clone()).filter(pressed);
+            between.map_or(found, |(between, walls)| measured(&between, Some(walls)))
         }
-    }
-    let rest = measurement.rest();
+    };
+    let stopped = pose.z;
+    let pose = lowered.as_ref().map_or(pose, |(lower, _)| lower);
+    let Measured { shift, play_m, rest } = found;
     let near = pose.z < stopped || (rest - pose.z).abs() <= LIFT;
     let z = if pose.through || !near { pose.z } else { rest };
     let engaged_m = pose.depth + pose.z - z;
     let back = (rotations_to_z()[pose.out] * parts.socket.own).inverse();
     let own = turns()[pose.turn] * parts.plug.own;
-    let moved = Translation3::new(measurement.shift[0], measurement.shift[1], z)
-        * UnitQuaternion::from_rotation_matrix(&own);
+    let moved =
+        Translation3::new(shift[0], shift[1], z) * UnitQuaternion::from_rotation_matrix(&own);
     let turned = UnitQuaternion::from_rotation_matrix(&back);
     Mate {
         pose: Isometry3::from_parts(Translation3::identity(), turned) * moved,

@@ -37,8 +37,6 @@ const DROP: f64 = 0.1 * MM;
 const SEATED: f64 = 1.0 * MM;
 /// Largest interference of a contact spring, m.
 const MAX_SPRING: f64 = 0.6 * MM;
-/// Smallest interference of a spring that presses the plug to a wall, as a share of the play between the walls.
-const PRESSED: f64 = 0.25;
 /// Share of the largest area of walls that face one another from which all of them count as facing.
 const FULL_AREA: f64 = 0.995;
 
@@ -310,42 +308,30 @@ impl Fine {
         found
     }
 
-    /// Returns the pose in the middle between the walls that face the plug, if springs hold it beside it, and the play
-    /// between the walls along x and y, m. If only springs stop the plug before most walls face one another, it is
-    /// deeper. Pins in narrow holes that have little play in a wide opening do not count as springs.
-    pub fn between_springs(&self, pose: &Pose) -> Option<(Pose, [f64; 2])> {
-        let middle = |pose: Pose| {
-            let [x, y] = self.between_walls(&pose);
-            let ([x, y], play) = ([x?[0], y?[0]], [x?[1], y?[1]]);
-            Some((Pose { shift: [pose.shift[0] + x, pose.shift[1] + y], ..pose }, play))
-        };
+    /// Returns the deeper pose in which most walls face one another, with the play between them along x and y, m, if only
+    /// springs stop the plug before it.
+    pub fn lowered(&self, pose: &Pose) -> Option<(Pose, [f64; 2])> {
         let missed = if pose.through { 0.0 } else { self.missed(pose) };
         // The plug can rest a little higher, on its body.
         let lowered = |raised: i32| {
             let by = Some(missed - f64::from(raised) * DROP).filter(|by| *by > SEATED)?;
-            let (lower, play) = middle(Pose { z: pose.z - by, ..pose.clone() })?;
+            let (lower, play) = self.between_walls(Pose { z: pose.z - by, ..pose.clone() })?;
             let free = play.iter().all(|play| *play >= -2.0 * TOLERANCE);
             let springs = free && self.interference(&lower) <= MAX_SPRING;
             springs.then(|| (self.with_depth(lower), play))
         };
-        (0..4).find_map(lowered).or_else(|| {
-            let interference = self.interference(pose);
-            let stiff = |play: [f64; 2]| interference >= PRESSED * play[0].min(play[1]);
-            middle(pose.clone()).filter(|(_, play)| interference > 0.0 && stiff(*play))
-        })
+        (0..4).find_map(lowered)
     }
 
-    /// Returns the distance of a pose from the middle between the walls that face the plug, along x and y, and the play
-    /// between them, m: without springs and ribs on less than half of a wall. `None` without walls on both sides.
-    pub fn between_walls(&self, pose: &Pose) -> [Option<[f64; 2]>; 2] {
+    /// Returns a pose moved to the middle between the walls that face the plug, and the play between them along x and y,
+    /// m: without springs and ribs on less than half of a wall. `None` without walls on four sides.
+    pub fn between_walls(&self, pose: Pose) -> Option<(Pose, [f64; 2])> {
         let most = (2.0 * self.max_play / self.step).ceil() as i32;
-        let (at, z) = (self.cells(pose), pose.z as f32 + LEVEL);
-        let gaps = self.sides.gaps(&self.upper, at, z, most);
-        let gaps = gaps.map(|gap| gap.map(|gap| f64::from(gap) * self.step));
-        [0, 2].map(|side| {
-            let (plus, minus) = gaps[side].zip(gaps[side + 1])?;
-            Some([(plus - minus) / 2.0, plus + minus])
-        })
+        let (at, z) = (self.cells(&pose), pose.z as f32 + LEVEL);
+        let [a, b, c, d] = self.sides.gaps(&self.upper, at, z, most);
+        let [a, b, c, d] = [a?, b?, c?, d?].map(|gap| f64::from(gap) * self.step);
+        let [x, y] = pose.shift;
+        Some((Pose { shift: [x + (a - b) / 2.0, y + (c - d) / 2.0], ..pose }, [a + b, c + d]))
     }
 
     /// Returns the cells that both parts fill at a pose.

@@ -224,19 +224,8 @@ fn files_that_are_too_much_are_refused_at_once() {
 }
 
 #[test]
-fn an_export_overwrites_no_neighbour_and_a_task_path_may_have_a_comma() {
+fn a_task_path_may_have_a_comma() {
     let folder = Studies::new();
-    let out = folder.word("part.curaprofile");
-    let neighbour = folder.file("part-outline.stl", "precious");
-    let export = |density: &str| {
-        let finger = ["export", "finger", "--density", density, "--direction", "0"];
-        optimize(&[&finger[..], &["--format", "cura", "--out", &out]].concat())
-    };
-    export("20").fails(2, &["part-outline.stl", "exists with other contents"]);
-    assert_eq!(folder.read("part-outline.stl"), "precious");
-    fs::remove_file(&neighbour).expect("it is removed");
-    export("20").succeeds();
-    export("20").succeeds();
     let task = folder.file("usb,old.toml", include_str!("../tasks/usb.toml"));
     folder.study("s", 4, &["--task", &task]).succeeds();
 }

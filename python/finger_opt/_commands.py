@@ -716,12 +716,12 @@ def export_finger(
     direction: float | None = None,
     finger: StrPath | None = None,
     phase_mm: float | None = None,
-    format: Literal["stl", "3mf", "svg", "dxf", "sheet", "cura", "prusaslicer", "prusaslicer-3mf", "orcaslicer-3mf"] | None = None,
+    format: Literal["stl", "3mf", "svg", "dxf", "sheet", "prusaslicer-3mf", "orcaslicer-3mf"] | None = None,
 ) -> tuple[Path, ...]:
     """Export a finger for the printer: the best of a study, or one with a given infill, as ``optimize export finger`` does.
 
-    The two fingers of a gripper are identical. STL, 3MF, DXF and SVG contain every rib. The settings for
-    slicers are for the outline, which is written beside them; the slicer fills it with its own ribs.
+    The two fingers of a gripper are identical. STL, 3MF, DXF and SVG contain every rib; in the projects for
+    slicers, the slicer fills the outline with its own ribs.
 
     Args:
         study: Folder of a study: its recommended design.

@@ -12,7 +12,6 @@ pub mod wrong_unit;
 pub use faults::syntax;
 pub use place::{InputError, Place, Placed, RequestError};
 use serde::de::DeserializeOwned;
-use std::sync::atomic::{AtomicU64, Ordering};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue, ValueDeserializer};
 use wrong_unit::WrongUnit;
@@ -33,21 +32,12 @@ pub struct Document<'a> {
     taken: &'a [&'a str],
 }
 
-/// Number of parsed texts.
-static PARSED: AtomicU64 = AtomicU64::new(0);
-
-/// Returns the number of TOML texts parsed by this process.
-pub fn parsed() -> u64 {
-    PARSED.load(Ordering::Relaxed)
-}
-
 impl<'a> Document<'a> {
     /// Parses TOML; `file` is named in errors.
     ///
     /// # Errors
     /// If the text is not TOML.
     pub fn parse(text: &'a str, file: &'a str) -> Result<Self, InputError> {
-        PARSED.fetch_add(1, Ordering::Relaxed);
         let table = DeTable::parse(text).map_err(|error| syntax(file, text, &error))?;
         let tree = Spanned::new(table.span(), DeValue::Table(table.into_inner()));
         Ok(Document { text, file, tree, taken: &[] })
@@ -71,13 +61,9 @@ impl<'a> Document<'a> {
     /// Deserializes the whole document.
     ///
     /// # Errors
-    /// If the document does not have the structure of `T`, has a control character, or has a `name` that is empty or
-    /// has several lines.
+    /// If the document does not have the structure of `T`.
     pub fn read<T: DeserializeOwned>(&self) -> Result<T, InputError> {
         let (value, table) = (self.deserialize()?, self.deserialize()?);
-        if let Some((key, problem)) = bad_text(&table) {
-            return Check { file: self.file }.fail(&key, problem);
-        }
         // No array may be too long. The deserializer of TOML text ignores surplus elements: it would read
         // `[-4,175, 4,175]`, with decimal commas, as -4 and 175.
         T::deserialize(toml::Value::Table(table)).map_err(|error| syntax(self.file, "", &error))?;
@@ -96,28 +82,6 @@ impl<'a> Document<'a> {
 /// See [`Document::parse`] and [`Document::read`].
 pub fn read<T: DeserializeOwned>(text: &str, file: &str) -> Result<T, InputError> {
     Document::parse(text, file)?.read()
-}
-
-/// Returns the top-level key and the problem of the first text with a control character, which would reach terminals
-/// and pages, or of a `name` that is empty or has several lines.
-pub fn bad_text(table: &toml::Table) -> Option<(String, &'static str)> {
-    const CONTROL: &str = "has a control character, such as \\u001b";
-    fn problem(key: &str, value: &toml::Value) -> Option<&'static str> {
-        match value {
-            toml::Value::String(text) => match key == "name" {
-                true if text.trim().is_empty() => Some("is empty; give a name"),
-                true if text.contains('\n') => Some("has a line break; a name is one line"),
-                _ => text.chars().any(|c| c.is_control() && c != '\n').then_some(CONTROL),
-            },
-            toml::Value::Array(items) => items.iter().find_map(|item| problem("", item)),
-            toml::Value::Table(table) => bad_text(table).map(|(_, problem)| problem),
-            _ => None,
-        }
-    }
-    table.iter().find_map(|(key, value)| match key.chars().any(char::is_control) {
-        true => Some(("a key".to_owned(), CONTROL)),
-        false => problem(key, value).map(|problem| (key.clone(), problem)),
-    })
 }
 
 /// Checks that each line of a CSV text closes its quoted cells; an unclosed one would include the lines below. Lines

@@ -50,7 +50,6 @@ class Insertion:
     def step(self, velocity_mm_per_s: list[float]) -> _Stand: ...
 
 class Sweep:
-    known: int
     def __init__(self, keywords: str) -> None: ...
     def measure(
         self, columns: dict[str, list[float]], stop: Stop | None = None

@@ -143,9 +143,7 @@ fn every_format_of_a_studys_best_finger_is_written() {
         optimize_line(&format!("export finger {study} --format {format} --out {}", out.display()))
     };
     for (format, file, words) in [
-        ("svg", "f.svg", "width=\"52.8mm\""),
         ("dxf", "f.dxf", "POLYLINE"),
-        ("sheet", "sheet.svg", "0°"),
         ("sheet", "sheet.html", "PETG"),
         ("stl", "f.stl", ""),
         ("3mf", "f.3mf", ""),
@@ -154,7 +152,7 @@ fn every_format_of_a_studys_best_finger_is_written() {
     ] {
         export(format, file).succeeds();
         let written = std::fs::read(folder.join(file)).unwrap();
-        if (format, file) != ("sheet", "sheet.svg") && !format.ends_with("-3mf") {
+        if !format.ends_with("-3mf") {
             let out = folder.join(file);
             optimize_line(&format!("export finger {} --out {}", study.display(), out.display()))
                 .succeeds();
@@ -167,16 +165,17 @@ fn every_format_of_a_studys_best_finger_is_written() {
             assert!(text.contains("N/mm, measured model") && text.contains("N/mm, from the ribs"));
         }
     }
-    export("sheet", "sheet.pdf").fails(2, &["sheet.pdf", ".svg or .html"]);
+    export("sheet", "sheet.pdf").fails(2, &["sheet.pdf", "must end in .html or .htm"]);
     export("stl", "f.3MF").fails(2, &["--format stl", "f.3MF", "must end in .stl"]);
     export("prusaslicer-3mf", "f.gcode").fails(2, &["f.gcode", "must end in .3mf"]);
+    export("sheet", "f.svg").fails(2, &["--format sheet", "must end in .html or .htm"]);
     export("dxf", "f.html").fails(2, &["--format dxf", "must end in .dxf"]);
     optimize_line(&format!("export finger {} --out f.txt", study.display()))
         .fails(2, &["--out f.txt", "must end in one of .3mf, .dxf, .htm"]);
     let finger = include_str!("../fingers/finray9.toml").replace("data/measured", "none");
     let finger = studies.file("finger.toml", &finger);
     for command in
-        ["finger", &format!("export finger --format sheet --out {}/s.svg", folder.display())]
+        ["finger", &format!("export finger --format sheet --out {}/s.html", folder.display())]
     {
         let line = format!("{command} --density 20 --direction 20 --finger {finger}");
         optimize_line(&line).fails(2, &["none_stiffness.csv"]);

@@ -716,11 +716,11 @@ def export_finger(
     direction: float | None = None,
     finger: StrPath | None = None,
     phase_mm: float | None = None,
-    format: Literal["stl", "3mf", "svg", "dxf", "sheet", "prusaslicer-3mf", "orcaslicer-3mf"] | None = None,
+    format: Literal["stl", "3mf", "dxf", "sheet", "prusaslicer-3mf", "orcaslicer-3mf"] | None = None,
 ) -> tuple[Path, ...]:
     """Export a finger for the printer: the best of a study, or one with a given infill, as ``optimize export finger`` does.
 
-    The two fingers of a gripper are identical. STL, 3MF, DXF and SVG contain every rib; in the projects for
+    The two fingers of a gripper are identical. STL, 3MF and DXF contain every rib; in the projects for
     slicers, the slicer fills the outline with its own ribs.
 
     Args:
@@ -730,7 +730,7 @@ def export_finger(
         direction: Infill direction, degrees.
         finger: finray9, or the path of a finger file [default: the study's, or finray9].
         phase_mm: Position of the first rib, mm [default: as in the finger file].
-        format: File format [default: by the extension of FILE; the profile for .svg].
+        format: File format [default: by the extension of FILE].
 
     Raises:
         InputError: A value or file is invalid; :class:`TaskError` if it is the task.

@@ -14,12 +14,12 @@ use finray::mechanics;
 use serde::Serialize;
 use std::collections::BTreeSet;
 use std::fmt::Display;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use study::write_file;
 
 /// Export a finger for the printer: the best of a study, or one with a given infill
 ///
-/// The two fingers of a gripper are identical. STL, 3MF, DXF and SVG contain every rib; in the
+/// The two fingers of a gripper are identical. STL, 3MF and DXF contain every rib; in the
 /// projects for slicers, the slicer fills the outline with its own ribs.
 #[derive(Debug, Clone, clap::Args)]
 #[command(after_help = "Example: optimize export finger results/rj45-gp-seed0 --out finger.stl")]
@@ -27,7 +27,7 @@ pub struct Request {
     /// The finger.
     #[command(flatten)]
     pub finger: PrintRequest,
-    /// File format [default: by the extension of FILE; the profile for .svg]
+    /// File format [default: by the extension of FILE]
     #[arg(long, value_enum)]
     pub format: Option<Format>,
     /// File to write
@@ -43,11 +43,9 @@ pub enum Format {
     /// Closed surface with its unit
     #[value(name = "3mf")]
     ThreeMf,
-    /// Profile, true to size
-    Svg,
     /// Profile as closed polylines, mm
     Dxf,
-    /// One page with drawing, dimensions and material; FILE ends in .svg or .html
+    /// One page with drawing, dimensions and material
     Sheet,
     /// Outline and solid base with the settings of PrusaSlicer, in one 3MF; do not rotate it on the bed
     #[value(name = "prusaslicer-3mf")]
@@ -84,9 +82,8 @@ impl command::Request for Request {
             }
             Format::PrusaslicerProject => project(slicer::prusaslicer_project(&geometry))?,
             Format::OrcaslicerProject => project(slicer::orcaslicer_project(&geometry))?,
-            Format::Svg => write_file(out, &profile::svg(&geometry, &title))?,
             Format::Dxf => write_file(out, &profile::dxf(&geometry, &title))?,
-            Format::Sheet => write_file(out, &draw_sheet(&self.finger, &geometry, out)?)?,
+            Format::Sheet => write_file(out, &draw_sheet(&self.finger, &geometry)?)?,
         }
         let text = format!("wrote {title}: {}\n", out.display());
         Ok(Output::new(text, Written { out: out.clone(), title }))
@@ -127,9 +124,8 @@ impl Format {
         match self {
             Format::Stl => &["stl"],
             Format::ThreeMf | Format::PrusaslicerProject | Format::OrcaslicerProject => &["3mf"],
-            Format::Svg => &["svg"],
             Format::Dxf => &["dxf"],
-            Format::Sheet => &["svg", "html", "htm"],
+            Format::Sheet => &["html", "htm"],
         }
     }
 }
@@ -139,18 +135,10 @@ fn closed(prism: Result<Prism, PrismError>, geometry: &Geometry) -> Result<Prism
     prism.map_err(|error| Failure::usage(format!("{}: {error}", geometry.finger.file)))
 }
 
-/// Draws the sheet of a finger in the format of the file.
-fn draw_sheet(request: &PrintRequest, geometry: &Geometry, out: &Path) -> Result<String, Failure> {
-    let write = match &*extension(out) {
-        "svg" => sheet::svg,
-        "html" | "htm" => sheet::html,
-        _ => {
-            let problem = format!("--out {}: must end in .svg or .html", out.display());
-            return Err(Failure::usage(problem));
-        }
-    };
+/// Draws the sheet of a finger.
+fn draw_sheet(request: &PrintRequest, geometry: &Geometry) -> Result<String, Failure> {
     let ribs = mechanics::compute(geometry)?;
     let measured = request.predicted_stiffness()?.map(|prediction| prediction.at_pad());
     let origin = &request.dir.as_deref().map_or(String::new(), study_name);
-    Ok(write(geometry, &SheetData { origin, ribs: &ribs, measured }))
+    Ok(sheet::html(geometry, &SheetData { origin, ribs: &ribs, measured }))
 }

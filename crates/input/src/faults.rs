@@ -8,8 +8,6 @@ use toml::de::{DeValue, Error, ValueDeserializer};
 
 /// Largest number of faults that are reported at once.
 pub const MAX_FAULTS: usize = 10;
-/// Largest text, bytes, of which more than the first fault is reported: each fault takes several readings.
-const MAX_LENGTH: usize = 16 << 10;
 const UNKNOWN: &str = "unknown field `";
 const MISSING: &str = "missing field `";
 
@@ -66,8 +64,7 @@ impl<'a> Document<'a> {
     /// find the next fault.
     pub(crate) fn faults<T: DeserializeOwned>(mut self, error: Error) -> InputError {
         let (mut found, mut next) = (Vec::new(), Some(error));
-        let most = if self.text.len() > MAX_LENGTH { 1 } else { MAX_FAULTS };
-        while let Some(error) = next.take_if(|_| found.len() < most) {
+        while let Some(error) = next.take_if(|_| found.len() < MAX_FAULTS) {
             let is_key = error.message().starts_with(UNKNOWN);
             let near = nearest_key(error.message(), if is_key { self.taken } else { &[] });
             let repaired = if is_key { self.without_key::<T>(&error, near) } else { None };

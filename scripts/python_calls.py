@@ -37,11 +37,11 @@ INFILL = ("density", "direction")
 SUBJECT = ("task", *INFILL)
 CALLS = {
     "evaluate": Call(
-        "evaluate", "_evaluation.Evaluation", SUBJECT, unset=("seed", "repeat_seed"), always={"no_ribs": "True"},
+        "evaluate", "_evaluation.Evaluation", SUBJECT, unset=("seed",), always={"no_ribs": "True"},
         example="fo.evaluate(\"usb\", density=20, direction=10).range_mm\n7.2",
     ),
     "trial": Call(
-        "trial", "_trial.Trial", (*SUBJECT, "offset_mm"), unset=("repeat_seed",),
+        "trial", "_trial.Trial", (*SUBJECT, "offset_mm"),
         hidden={"every_s": "0.001", "film": ""},
         checks="""\
 if probe:

@@ -93,7 +93,6 @@ def evaluate(
     uncertainty: StrPath | None = None,
     seed: int | None = None,
     repeat: int | None = None,
-    repeat_seed: int | None = None,
     measurements: StrPath | None = None,
 ) -> Evaluation:
     """Simulate the tolerance window of one finger, as ``optimize evaluate`` does.
@@ -125,7 +124,6 @@ def evaluate(
         seed: Seed of the drawn errors; the same draws as in a study with this seed.
         repeat: Repeat N times with friction varied within 10 %, start within 0.02 mm, half the step in
             every other one, and a cell's numbers drawn.
-        repeat_seed: Seed of the repeats.
         measurements: Also print the finger's measured ranges from this file: published, or a path.
 
     Raises:
@@ -138,7 +136,7 @@ def evaluate(
         "cell": cell, "stiffness_data": stiffness_data, "engine": engine, "finger_model": finger_model,
         "finger": finger, "start": start, "stiffness_compliance": stiffness_compliance,
         "stiffness_assembly": stiffness_assembly, "set": set, "walk": walk, "uncertainty": uncertainty, "seed": seed,
-        "repeat": repeat, "repeat_seed": repeat_seed, "measurements": measurements, "no_ribs": True,
+        "repeat": repeat, "measurements": measurements, "no_ribs": True,
     }, Evaluation)
 
 
@@ -161,7 +159,6 @@ def trial(
     stiffness_assembly: float | None = None,
     set: Numbers | None = None,
     repeat: int | None = None,
-    repeat_seed: int | None = None,
     record: StrPath | None = None,
     plot: StrPath | None = None,
     log: StrPath | None = None,
@@ -196,7 +193,6 @@ def trial(
         set: A number of the task or the finger, as in spaces/codesign.toml.
         repeat: Repeat N times with friction varied within 10 %, start within 0.02 mm, half the step in
             every other one, and a cell's numbers drawn.
-        repeat_seed: Seed of the repeats.
         record: Record the trial: a page that plays it, or a table of every millisecond.
         plot: Draw force against depth.
         log: Write force and pose at 500 Hz, as a robot logs them, from the start of the search.
@@ -219,8 +215,8 @@ def trial(
         "task": sources(task), "density": density, "direction": direction, "offset_mm": offset_mm, "space": space,
         "robot": robot, "cell": cell, "stiffness_data": stiffness_data, "engine": engine,
         "finger_model": finger_model, "finger": finger, "start": start, "stiffness_compliance": stiffness_compliance,
-        "stiffness_assembly": stiffness_assembly, "set": set, "repeat": repeat, "repeat_seed": repeat_seed,
-        "record": record, "plot": plot, "log": log, "probe": probe, "svg": svg, "every_s": every_s, "film": film,
+        "stiffness_assembly": stiffness_assembly, "set": set, "repeat": repeat, "record": record, "plot": plot,
+        "log": log, "probe": probe, "svg": svg, "every_s": every_s, "film": film,
     }, Trial)
 
 

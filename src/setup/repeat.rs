@@ -8,7 +8,10 @@ use insertion::{OffsetStep, Scenario};
 use serde::{Serialize, Serializer};
 use serde_json::json;
 
-/// Number and seed of repeats with small variations of friction, start and step.
+/// Seed of the repeats.
+const SEED: u64 = 0;
+
+/// Number of repeats with small variations of friction, start and step.
 #[derive(Debug, Clone, Copy, clap::Args)]
 pub struct RepeatRequest {
     /// Repeat N times with friction varied within 10 %, start within 0.02 mm, half the step in every other one, and a
@@ -16,15 +19,6 @@ pub struct RepeatRequest {
     #[arg(id = "repeat", long = "repeat", value_name = "N", required = false,
           value_parser = clap::value_parser!(u32).range(2..=10_000))]
     pub count: u32,
-    /// Seed of the repeats
-    #[arg(
-        id = "repeat_seed",
-        long = "repeat-seed",
-        value_name = "N",
-        default_value_t = 0,
-        requires = "repeat"
-    )]
-    pub seed: u64,
 }
 
 impl RepeatRequest {
@@ -38,7 +32,7 @@ impl RepeatRequest {
         context: &Context<'_>,
         measure: impl Fn(&Repeats) -> T,
     ) -> Result<(T, usize), Failure> {
-        let (evaluator, repeats, stop) = (&setup.evaluator, (self.seed, self.count), context.stop);
+        let (evaluator, repeats, stop) = (&setup.evaluator, (SEED, self.count), context.stop);
         let progress = |done_of| context.part("starts of the repeats", done_of, 0.0);
         let (started, impossible) = evaluator.drawn(scenario, taught, repeats, stop, progress)?;
         let measured = evaluator.repeated(&started, repeats, stop, measure)?;

@@ -29,7 +29,6 @@ mod map;
 mod objectives;
 mod optimizers;
 mod parameters;
-mod parsed;
 mod race;
 mod recovery;
 mod requests;

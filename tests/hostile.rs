@@ -205,7 +205,6 @@ fn input_files_that_mean_nothing_are_refused_before_anything_is_simulated() {
         ("[grip]", &few, "there must be 1 to 3000"),
         ("[grip]", &many, "is longer than"),
         ("finger_plug =", "finger_plug = 0.0", "finger_plug_torsion_mm: is"),
-        ("description", "description = \"\\u001b[31m\"", "control character"),
     ] {
         let task = changed(&studies, "task.toml", usb, key, by);
         studies.study("s", 3, &["--task", &task]).fails(2, &["task.toml", words]);

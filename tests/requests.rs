@@ -216,7 +216,10 @@ fn a_sweep_measures_what_evaluate_does_in_its_order_and_keeps_it() {
             assert_eq!(found.evaluation, alone.evaluated(&silent()).ok().unwrap().evaluation);
         }
     }
-    assert_eq!(sweep.known(), 3);
+    let folders = std::fs::read_dir(dir.path()).unwrap();
+    let files =
+        |folder: std::io::Result<std::fs::DirEntry>| std::fs::read_dir(folder.unwrap().path());
+    assert_eq!(folders.flat_map(|folder| files(folder).unwrap()).count(), 3);
     let wrong = refused(sweep.measure(&[finger(20.0), finger(99.0)], &NEVER));
     assert!(wrong.contains("--density 99"), "{wrong}");
     assert!(sweep.measure(&fingers, &AtomicBool::new(true)).is_err());

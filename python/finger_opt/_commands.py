@@ -93,7 +93,6 @@ def evaluate(
     uncertainty: StrPath | None = None,
     seed: int | None = None,
     repeat: int | None = None,
-    repeat_seed: int | None = None,
     measurements: StrPath | None = None,
 ) -> Evaluation:
     """Simulate the tolerance window of one finger, as ``optimize evaluate`` does.
@@ -125,7 +124,6 @@ def evaluate(
         seed: Seed of the drawn errors; the same draws as in a study with this seed.
         repeat: Repeat N times with friction varied within 10 %, start within 0.02 mm, half the step in
             every other one, and a cell's numbers drawn.
-        repeat_seed: Seed of the repeats.
         measurements: Also print the finger's measured ranges from this file: published, or a path.
 
     Raises:
@@ -138,7 +136,7 @@ def evaluate(
         "cell": cell, "stiffness_data": stiffness_data, "engine": engine, "finger_model": finger_model,
         "finger": finger, "start": start, "stiffness_compliance": stiffness_compliance,
         "stiffness_assembly": stiffness_assembly, "set": set, "walk": walk, "uncertainty": uncertainty, "seed": seed,
-        "repeat": repeat, "repeat_seed": repeat_seed, "measurements": measurements, "no_ribs": True,
+        "repeat": repeat, "measurements": measurements, "no_ribs": True,
     }, Evaluation)
 
 
@@ -161,7 +159,6 @@ def trial(
     stiffness_assembly: float | None = None,
     set: Numbers | None = None,
     repeat: int | None = None,
-    repeat_seed: int | None = None,
     record: StrPath | None = None,
     plot: StrPath | None = None,
     log: StrPath | None = None,
@@ -196,7 +193,6 @@ def trial(
         set: A number of the task or the finger, as in spaces/codesign.toml.
         repeat: Repeat N times with friction varied within 10 %, start within 0.02 mm, half the step in
             every other one, and a cell's numbers drawn.
-        repeat_seed: Seed of the repeats.
         record: Record the trial: a page that plays it, or a table of every millisecond.
         plot: Draw force against depth.
         log: Write force and pose at 500 Hz, as a robot logs them, from the start of the search.
@@ -219,8 +215,8 @@ def trial(
         "task": sources(task), "density": density, "direction": direction, "offset_mm": offset_mm, "space": space,
         "robot": robot, "cell": cell, "stiffness_data": stiffness_data, "engine": engine,
         "finger_model": finger_model, "finger": finger, "start": start, "stiffness_compliance": stiffness_compliance,
-        "stiffness_assembly": stiffness_assembly, "set": set, "repeat": repeat, "repeat_seed": repeat_seed,
-        "record": record, "plot": plot, "log": log, "probe": probe, "svg": svg, "every_s": every_s, "film": film,
+        "stiffness_assembly": stiffness_assembly, "set": set, "repeat": repeat, "record": record, "plot": plot,
+        "log": log, "probe": probe, "svg": svg, "every_s": every_s, "film": film,
     }, Trial)
 
 
@@ -716,12 +712,12 @@ def export_finger(
     direction: float | None = None,
     finger: StrPath | None = None,
     phase_mm: float | None = None,
-    format: Literal["stl", "3mf", "svg", "dxf", "sheet", "cura", "prusaslicer", "prusaslicer-3mf", "orcaslicer-3mf"] | None = None,
+    format: Literal["stl", "3mf", "dxf", "sheet", "prusaslicer-3mf", "orcaslicer-3mf"] | None = None,
 ) -> tuple[Path, ...]:
     """Export a finger for the printer: the best of a study, or one with a given infill, as ``optimize export finger`` does.
 
-    The two fingers of a gripper are identical. STL, 3MF, DXF and SVG contain every rib. The settings for
-    slicers are for the outline, which is written beside them; the slicer fills it with its own ribs.
+    The two fingers of a gripper are identical. STL, 3MF and DXF contain every rib; in the projects for
+    slicers, the slicer fills the outline with its own ribs.
 
     Args:
         study: Folder of a study: its recommended design.
@@ -730,7 +726,7 @@ def export_finger(
         direction: Infill direction, degrees.
         finger: finray9, or the path of a finger file [default: the study's, or finray9].
         phase_mm: Position of the first rib, mm [default: as in the finger file].
-        format: File format [default: by the extension of FILE; the profile for .svg].
+        format: File format [default: by the extension of FILE].
 
     Raises:
         InputError: A value or file is invalid; :class:`TaskError` if it is the task.

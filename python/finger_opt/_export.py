@@ -10,14 +10,13 @@ from ._result import Result
 
 @dataclass(frozen=True, repr=False)
 class Files(Result):
-    """Written files: ``out``, and the files that belong to it in the same folder."""
+    """Written file."""
 
     out: str
-    beside: tuple[str, ...] = ()
     title: str | None = None
     task: str | None = None
 
     @property
     def paths(self) -> tuple[Path, ...]:
-        """Paths of all written files."""
-        return tuple(Path(file) for file in (self.out, *self.beside))
+        """Path of the written file."""
+        return (Path(self.out),)

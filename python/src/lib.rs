@@ -10,7 +10,7 @@ mod sweep;
 mod task;
 
 use calibration::experiments::line::{LARGEST_FORCE_N, LARGEST_LENGTH_MM};
-use finger_opt::{manual, program, python};
+use finger_opt::{program, python};
 use pyo3::prelude::*;
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -20,12 +20,6 @@ use std::process::ExitCode;
 fn main(py: Python<'_>, arguments: Vec<OsString>) -> u8 {
     let code = py.allow_threads(|| program::main(arguments));
     u8::from(code != ExitCode::SUCCESS) * if code == ExitCode::from(2) { 2 } else { 1 }
-}
-
-/// Returns the commands of `optimize` with their options as JSON.
-#[pyfunction]
-fn commands() -> String {
-    serde_json::json!(manual::commands(program::program())).to_string()
 }
 
 /// Defines the extension module.
@@ -39,7 +33,6 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("LARGEST_LENGTH_MM", LARGEST_LENGTH_MM)?;
     errors::register(module)?;
     module.add_function(wrap_pyfunction!(main, module)?)?;
-    module.add_function(wrap_pyfunction!(commands, module)?)?;
     module.add_function(wrap_pyfunction!(call::call, module)?)?;
     module.add_function(wrap_pyfunction!(task::outcomes, module)?)?;
     module.add_function(wrap_pyfunction!(task::space, module)?)?;

@@ -46,12 +46,6 @@ impl Sweep {
         Ok(Sweep(sweep.map_err(exception)?))
     }
 
-    /// Returns the number of windows that were in the cache.
-    #[getter]
-    fn known(&self) -> u64 {
-        self.0.known()
-    }
-
     /// Measures one finger for each row of these columns: `density`, `direction`, and numbers of task and finger by
     /// their keys. Ends early once `stop` is set.
     #[pyo3(signature = (columns, stop=None))]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import functools
 import importlib
 import inspect
 import json
@@ -72,8 +73,14 @@ ELSEWHERE = {
     ("task check", "file"): "task",
     ("task tune", "file"): "task",
 }
+@functools.cache
+def described():
+    shown = [sys.executable, "-m", "finger_opt", "man", "--format", "json"]
+    return json.loads(subprocess.run(shown, stdout=subprocess.PIPE, text=True, check=True).stdout)
+
+
 def commands():
-    return {command["name"]: command["options"] for command in json.loads(_native.commands())}
+    return {command["name"]: command["options"] for command in described()}
 
 
 def test_every_command_has_a_counterpart_or_a_reason():
@@ -86,7 +93,7 @@ def test_the_calls_are_those_that_their_script_writes(monkeypatch):
     monkeypatch.syspath_prepend(Path(__file__).parents[2] / "scripts")
     monkeypatch.setattr(sys, "dont_write_bytecode", True)
     modules = importlib.import_module("python_modules").modules
-    for name, text in modules(json.loads(_native.commands())).items():
+    for name, text in modules(described()).items():
         assert Path(fo.__file__).with_name(name).read_text() == text, f"{name}: scripts/generate.py writes it"
 
 

@@ -30,11 +30,6 @@ impl Sweep {
         Ok(Sweep { setup, search: windows.search(), plan, cache, pool })
     }
 
-    /// Returns the number of windows read from the cache.
-    pub fn known(&self) -> u64 {
-        self.cache.as_ref().map_or(0, Cache::hits)
-    }
-
     /// Simulates the tolerance windows of fingers.
     ///
     /// # Errors

@@ -71,11 +71,6 @@ impl Drawing {
         self.element(&format!("<text x=\"{x}\" y=\"{y}\"{font}>{}</text>", escape(words)));
     }
 
-    /// Sets the title of the drawing, for screen readers.
-    pub fn title(&mut self, words: &str) {
-        self.element(&format!("<title>{}</title>", escape(words)));
-    }
-
     /// Draws a line through points.
     pub fn line(&mut self, points: impl IntoIterator<Item = Point2<f64>>, style: Style) {
         self.path(&path(points), style);

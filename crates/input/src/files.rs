@@ -90,11 +90,11 @@ fn write_whole(path: &Path, content: &[u8], mode: Option<Permissions>) -> io::Re
     written
 }
 
-/// Text file of the user, locked against other processes and changed in place, so that it keeps its permissions and
-/// hard links.
+/// Text file of the user, locked against other processes.
 #[derive(Debug)]
 pub struct LockedFile {
-    file: File,
+    /// Holds the lock.
+    _file: File,
     path: PathBuf,
     text: String,
     /// Whether this process created the file.
@@ -121,7 +121,9 @@ impl LockedFile {
             // The previous owner of the lock may have removed or replaced the file.
             if fs::metadata(path).is_ok_and(|now| is_open_file(&now, &file).unwrap_or(false)) {
                 let text = utf8(read_up_to(&file, limit)?)?;
-                return Ok(LockedFile { file, path: path.to_owned(), text, created });
+                // A symbolic link stays.
+                let path = fs::canonicalize(path)?;
+                return Ok(LockedFile { _file: file, path, text, created });
             }
         }
     }
@@ -131,51 +133,14 @@ impl LockedFile {
         &self.text
     }
 
-    /// Replaces the text, by appending if possible. The new text is on the disk when this function returns.
+    /// Replaces the text atomically; the file keeps its permissions.
     ///
     /// # Errors
-    /// If the file cannot be written; the old text is then restored or, if that fails after a rewrite, left in the copy
-    /// `<name>.before`. Also if that copy cannot be made or removed.
-    pub fn replace(&mut self, new: &str) -> io::Result<()> {
-        let appends = new.starts_with(&self.text);
-        let kept = if appends { self.text.len() } else { 0 };
-        let copy = if appends { None } else { Some(self.back_up()?) };
-        let written = self.rewrite(kept, new);
-        let whole = written.is_ok() || self.rewrite(kept, &self.text).is_ok();
-        if written.is_ok() {
-            new.clone_into(&mut self.text);
-        }
-        let removed = copy.filter(|_| whole).map_or(Ok(()), fs::remove_file);
-        written.and(removed)
-    }
-
-    /// Copies the text to `<name>.before`, in case the process is killed while the file is rewritten. An existing file
-    /// is not overwritten.
-    fn back_up(&self) -> io::Result<PathBuf> {
-        let mut name = self.path.file_name().unwrap_or_default().to_owned();
-        name.push(".before");
-        let copy = self.path.with_file_name(name);
-        let taken = |error: io::Error| {
-            let problem = format!("{}: {error}; remove it first", copy.display());
-            io::Error::new(error.kind(), problem)
-        };
-        let mut file = File::options().write(true).create_new(true).open(&copy).map_err(taken)?;
-        let mode = self.file.metadata()?.permissions();
-        let written = file
-            .set_permissions(mode)
-            .and_then(|()| file.write_all(self.text.as_bytes()))
-            .and_then(|()| file.sync_all());
-        if written.is_err() {
-            let _ = fs::remove_file(&copy);
-        }
-        written.map(|()| copy)
-    }
-
-    fn rewrite(&self, kept: usize, text: &str) -> io::Result<()> {
-        let mut file = &self.file;
-        file.set_len(kept as u64)?;
-        file.write_all(&text.as_bytes()[kept..])?;
-        file.sync_all()
+    /// If the file cannot be written; it is then unchanged.
+    pub fn replace(mut self, new: &str) -> io::Result<()> {
+        write_named(&self.path, new.as_bytes())?;
+        self.created = false;
+        Ok(())
     }
 }
 
@@ -260,7 +225,6 @@ pub fn shell_word(text: impl Display) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::sync::atomic::AtomicBool;
 
     #[test]
     fn a_word_of_a_shell_is_quoted_if_it_would_be_split_or_expanded() {
@@ -334,42 +298,15 @@ mod tests {
     }
 
     #[test]
-    fn rewriting_a_table_overwrites_no_existing_backup() {
+    fn a_table_is_replaced_without_a_copy_and_an_empty_one_is_not_left() {
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("table.csv");
-        fs::write(&path, "a line\n").unwrap();
-        let mut table = LockedFile::open(&path, LARGEST_INPUT).unwrap();
-        let other = dir.path().join("table.csv.before");
-        fs::write(&other, "older").unwrap();
-        let replaced = table.replace("another beginning\n");
-        assert!(replaced.is_err(), "an existing backup is not overwritten");
-        assert_eq!(fs::read_to_string(&other).unwrap(), "older");
-        fs::remove_file(other).unwrap();
-        table.replace("another beginning\n").unwrap();
-        assert_eq!(fs::read_to_string(&path).unwrap(), "another beginning\n");
-        drop(LockedFile::open(&dir.path().join("new.csv"), LARGEST_INPUT).unwrap());
-        assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 1, "no copy, no empty file");
-    }
-
-    #[test]
-    fn a_backup_that_cannot_be_removed_leaves_the_new_text() {
-        let dir = tempfile::tempdir().unwrap();
-        let path = dir.path().join("table.csv");
-        fs::write(&path, "a line\n").unwrap();
-        let mut table = LockedFile::open(&path, LARGEST_INPUT).unwrap();
-        let done = AtomicBool::new(false);
-        // Another thread removes the copy as soon as it is made, some time before the function does.
-        let failed = std::thread::scope(|scope| {
-            scope.spawn(|| {
-                while !done.load(Ordering::Relaxed) {
-                    let _ = fs::remove_file(dir.path().join("table.csv.before"));
-                }
-            });
-            let failed = (0..1000).any(|number| table.replace(&format!("{number}th\n")).is_err());
-            done.store(true, Ordering::Relaxed);
-            failed
-        });
-        assert!(failed, "the copy was always there to be removed");
-        assert_eq!(table.text(), fs::read_to_string(&path).unwrap());
+        drop(LockedFile::open(&path, LARGEST_INPUT).unwrap());
+        assert!(!path.exists());
+        for text in ["a line\n", "another beginning\n"] {
+            LockedFile::open(&path, LARGEST_INPUT).unwrap().replace(text).unwrap();
+            assert_eq!(LockedFile::open(&path, LARGEST_INPUT).unwrap().text(), text);
+        }
+        assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 1, "no copy");
     }
 }

@@ -12,7 +12,6 @@ pub mod wrong_unit;
 pub use faults::syntax;
 pub use place::{InputError, Place, Placed, RequestError};
 use serde::de::DeserializeOwned;
-use std::sync::atomic::{AtomicU64, Ordering};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue, ValueDeserializer};
 use wrong_unit::WrongUnit;
@@ -33,21 +32,12 @@ pub struct Document<'a> {
     taken: &'a [&'a str],
 }
 
-/// Number of parsed texts.
-static PARSED: AtomicU64 = AtomicU64::new(0);
-
-/// Returns the number of TOML texts parsed by this process.
-pub fn parsed() -> u64 {
-    PARSED.load(Ordering::Relaxed)
-}
-
 impl<'a> Document<'a> {
     /// Parses TOML; `file` is named in errors.
     ///
     /// # Errors
     /// If the text is not TOML.
     pub fn parse(text: &'a str, file: &'a str) -> Result<Self, InputError> {
-        PARSED.fetch_add(1, Ordering::Relaxed);
         let table = DeTable::parse(text).map_err(|error| syntax(file, text, &error))?;
         let tree = Spanned::new(table.span(), DeValue::Table(table.into_inner()));
         Ok(Document { text, file, tree, taken: &[] })
@@ -71,13 +61,9 @@ impl<'a> Document<'a> {
     /// Deserializes the whole document.
     ///
     /// # Errors
-    /// If the document does not have the structure of `T`, has a control character, or has a `name` that is empty or
-    /// has several lines.
+    /// If the document does not have the structure of `T`.
     pub fn read<T: DeserializeOwned>(&self) -> Result<T, InputError> {
         let (value, table) = (self.deserialize()?, self.deserialize()?);
-        if let Some((key, problem)) = bad_text(&table) {
-            return Check { file: self.file }.fail(&key, problem);
-        }
         // No array may be too long. The deserializer of TOML text ignores surplus elements: it would read
         // `[-4,175, 4,175]`, with decimal commas, as -4 and 175.
         T::deserialize(toml::Value::Table(table)).map_err(|error| syntax(self.file, "", &error))?;
@@ -96,28 +82,6 @@ impl<'a> Document<'a> {
 /// See [`Document::parse`] and [`Document::read`].
 pub fn read<T: DeserializeOwned>(text: &str, file: &str) -> Result<T, InputError> {
     Document::parse(text, file)?.read()
-}
-
-/// Returns the top-level key and the problem of the first text with a control character, which would reach terminals
-/// and pages, or of a `name` that is empty or has several lines.
-pub fn bad_text(table: &toml::Table) -> Option<(String, &'static str)> {
-    const CONTROL: &str = "has a control character, such as \\u001b";
-    fn problem(key: &str, value: &toml::Value) -> Option<&'static str> {
-        match value {
-            toml::Value::String(text) => match key == "name" {
-                true if text.trim().is_empty() => Some("is empty; give a name"),
-                true if text.contains('\n') => Some("has a line break; a name is one line"),
-                _ => text.chars().any(|c| c.is_control() && c != '\n').then_some(CONTROL),
-            },
-            toml::Value::Array(items) => items.iter().find_map(|item| problem("", item)),
-            toml::Value::Table(table) => bad_text(table).map(|(_, problem)| problem),
-            _ => None,
-        }
-    }
-    table.iter().find_map(|(key, value)| match key.chars().any(char::is_control) {
-        true => Some(("a key".to_owned(), CONTROL)),
-        false => problem(key, value).map(|problem| (key.clone(), problem)),
-    })
 }
 
 /// Checks that each line of a CSV text closes its quoted cells; an unclosed one would include the lines below. Lines
@@ -278,13 +242,13 @@ mod tests {
         let error = |text: &str| read::<Friction>(text, "task.toml").unwrap_err().to_string();
         let text = error("plug_socket = 0.3\nother = 0.3");
         assert!(!text.contains("mean"), "{text}");
-        // The only missing key, though it is not similar.
+        // The missing key is reported, too.
         let text = error("other = 0.3");
-        assert!(text.matches("TOML").count() == 1 && text.contains("did you mean"), "{text}");
+        assert!(text.contains("`other`") && text.contains("missing field `plug_socket`"), "{text}");
     }
 
     #[test]
-    fn all_unknown_keys_and_a_missing_one_are_reported_at_once() {
+    fn all_unknown_keys_and_the_first_missing_one_are_reported_at_once() {
         #[derive(Debug, serde::Deserialize)]
         #[serde(deny_unknown_fields)]
         #[expect(dead_code, reason = "only the names are read")]
@@ -300,60 +264,22 @@ mod tests {
         assert_eq!(error.place().line, Some(1));
         let text = error.to_string();
         let found: Vec<_> = text.lines().filter(|line| line.contains('`')).collect();
-        let expected = ["`nam`", "`other`", "`friction.plug_sockt`", "`height_mm`"];
+        let expected = ["`nam`", "`other`", "`friction.plug_sockt`", "`mass_g`"];
         let begin = |(line, key): (&&str, &str)| {
             line.split(" field ").nth(1).is_some_and(|of| of.starts_with(key))
         };
         assert!(found.len() == 4 && found.iter().zip(expected).all(begin), "{text}");
         assert!(text.contains("line 1,") && text.contains("did you mean `name`?"), "{text}");
-        assert!(text.contains("did you mean `mass_g`?"), "{text}");
         let line = "friction = [{ plug_sockt = 1, plug_scket = 2 }]";
         let text = format!("mass_g = 1\nname = 3\n{line}");
         let text = read::<Pair>(&text, "t.toml").unwrap_err().to_string();
         assert!(text.matches(line).count() == 2 && text.contains("| name = 3"), "{text}");
-        let text = "friction = []\nname = \"a\"\nheight_mm = 1\nbought_at = \"bought\"";
-        let text = read::<Pair>(text, "t.toml").unwrap_err().to_string();
-        assert!(text.contains("missing field `mass_g`") && !text.contains("mean"), "{text}");
         let many: String = (0..20).map(|i| format!("other_{i} = 1\n")).collect();
         let text = read::<Pair>(&many, "t.toml").unwrap_err().to_string();
         assert_eq!(text.matches("unknown field").count(), faults::MAX_FAULTS);
         let document = Document::parse("kind = 1\nknd = 2\nplug_socket = 1", "t.toml").unwrap();
         let error = document.without(&["kind"]).read::<Friction>().unwrap_err().to_string();
         assert!(error.ends_with("did you mean `kind`?"), "{error}");
-    }
-
-    #[test]
-    fn all_missing_keys_are_listed_up_to_the_first_wrong_value() {
-        #[derive(Debug, serde::Deserialize)]
-        #[expect(dead_code, reason = "only the names are read")]
-        struct Part {
-            x_mm: [f64; 2],
-            mass_g: f64,
-            axis: String,
-        }
-        #[derive(Debug, serde::Deserialize)]
-        #[expect(dead_code, reason = "only the names are read")]
-        struct Plug {
-            part: Vec<Part>,
-            height_mm: f64,
-        }
-        let listed = |text: &str| -> Vec<String> {
-            let text = read::<Plug>(text, "t.toml").unwrap_err().to_string();
-            let fault = |line: &&str| line.starts_with("missing") || line.starts_with("invalid");
-            text.lines().filter(fault).map(str::to_owned).collect()
-        };
-        let text = "[[part]]\naxis = \"x\"\n[[part]]\nmass_g = 2.0";
-        let missing = ["part.x_mm", "part.mass_g", "height_mm", "part.x_mm", "part.axis"];
-        let mut found = listed(text);
-        let mut expected = missing.map(|key| format!("missing field `{key}`")).to_vec();
-        found.sort();
-        expected.sort();
-        assert_eq!(found, expected);
-        let found = listed(&text.replace("2.0", "[2]"));
-        assert_eq!(found.last().unwrap(), "missing field `part.mass_g`", "{found:?}");
-        assert_eq!(found[0], "invalid type: sequence, expected f64", "{found:?}");
-        // Each fault takes several readings of the file.
-        assert_eq!(listed(&format!("{text}\n#{}", " ".repeat(16 << 10))).len(), 1);
     }
 
     #[test]

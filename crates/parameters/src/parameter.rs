@@ -128,7 +128,7 @@ impl Parameter {
     /// Checks a parameter read from a file.
     ///
     /// # Errors
-    /// If a bound, the value or the transform cannot be used with this path, or the source is empty.
+    /// If a bound, the value or the transform cannot be used with this path.
     pub fn check(&self, check: Check<'_>) -> Result<(), InputError> {
         let Parameter { name, low, high, scale, .. } = self;
         check.finite(name, *low)?;
@@ -141,9 +141,6 @@ impl Parameter {
         }
         if let Some(problem) = self.mismatch() {
             return check.fail(name, problem);
-        }
-        if self.source.trim().is_empty() {
-            return check.fail(name, "source is empty; state where the bounds come from");
         }
         let (value, sd) = match (self.value, self.sd) {
             (None, None) => return Ok(()),

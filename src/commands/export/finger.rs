@@ -14,21 +14,20 @@ use finray::mechanics;
 use serde::Serialize;
 use std::collections::BTreeSet;
 use std::fmt::Display;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use study::write_file;
 
 /// Export a finger for the printer: the best of a study, or one with a given infill
 ///
-/// The two fingers of a gripper are identical. STL, 3MF, DXF and SVG contain every rib. The
-/// settings for slicers are for the outline, which is written beside them; the slicer fills it
-/// with its own ribs.
+/// The two fingers of a gripper are identical. STL, 3MF and DXF contain every rib; in the
+/// projects for slicers, the slicer fills the outline with its own ribs.
 #[derive(Debug, Clone, clap::Args)]
 #[command(after_help = "Example: optimize export finger results/rj45-gp-seed0 --out finger.stl")]
 pub struct Request {
     /// The finger.
     #[command(flatten)]
     pub finger: PrintRequest,
-    /// File format [default: by the extension of FILE; the profile for .svg]
+    /// File format [default: by the extension of FILE]
     #[arg(long, value_enum)]
     pub format: Option<Format>,
     /// File to write
@@ -44,16 +43,10 @@ pub enum Format {
     /// Closed surface with its unit
     #[value(name = "3mf")]
     ThreeMf,
-    /// Profile, true to size
-    Svg,
     /// Profile as closed polylines, mm
     Dxf,
-    /// One page with drawing, dimensions and material; FILE ends in .svg or .html
+    /// One page with drawing, dimensions and material
     Sheet,
-    /// Profile of settings to import in Cura (.curaprofile), with the outline beside it
-    Cura,
-    /// Configuration of PrusaSlicer (.ini), with the outline beside it
-    Prusaslicer,
     /// Outline and solid base with the settings of PrusaSlicer, in one 3MF; do not rotate it on the bed
     #[value(name = "prusaslicer-3mf")]
     PrusaslicerProject,
@@ -69,15 +62,12 @@ pub struct Written {
     out: PathBuf,
     /// Title of the finger.
     title: String,
-    /// Outline and base, for slicer settings.
-    beside: Vec<PathBuf>,
 }
 
 impl command::Request for Request {
     fn run(&self, _context: &Context<'_>) -> Result<Output, Failure> {
         let geometry = self.finger.geometry()?;
         let (out, title) = (&self.out, export::title(&geometry));
-        let mut beside = Vec::new();
         let failure = |error: &dyn Display| Failure::running(format!("{}: {error}", out.display()));
         let project = |bytes: Result<Vec<u8>, PrismError>| -> Result<(), Failure> {
             Ok(write_file(out, &bytes.map_err(|error| failure(&error))?)?)
@@ -92,25 +82,11 @@ impl command::Request for Request {
             }
             Format::PrusaslicerProject => project(slicer::prusaslicer_project(&geometry))?,
             Format::OrcaslicerProject => project(slicer::orcaslicer_project(&geometry))?,
-            Format::Svg => write_file(out, &profile::svg(&geometry, &title))?,
             Format::Dxf => write_file(out, &profile::dxf(&geometry, &title))?,
-            Format::Sheet => write_file(out, &draw_sheet(&self.finger, &geometry, out)?)?,
-            Format::Cura => beside = settings(out, &geometry, &slicer::cura(&geometry))?,
-            Format::Prusaslicer => {
-                beside = settings(out, &geometry, &slicer::prusaslicer(&geometry))?;
-            }
+            Format::Sheet => write_file(out, &draw_sheet(&self.finger, &geometry)?)?,
         }
-        let text = match &beside[..] {
-            [outline, base] => format!(
-                "wrote settings for {title}: {}\nslice with them: {}\n\
-                 load as a modifier with 100 % infill: {}\n",
-                out.display(),
-                outline.display(),
-                base.display()
-            ),
-            _ => format!("wrote {title}: {}\n", out.display()),
-        };
-        Ok(Output::new(text, Written { out: out.clone(), title, beside }))
+        let text = format!("wrote {title}: {}\n", out.display());
+        Ok(Output::new(text, Written { out: out.clone(), title }))
     }
 }
 
@@ -148,11 +124,8 @@ impl Format {
         match self {
             Format::Stl => &["stl"],
             Format::ThreeMf | Format::PrusaslicerProject | Format::OrcaslicerProject => &["3mf"],
-            Format::Svg => &["svg"],
             Format::Dxf => &["dxf"],
-            Format::Sheet => &["svg", "html", "htm"],
-            Format::Cura => &["curaprofile"],
-            Format::Prusaslicer => &["ini"],
+            Format::Sheet => &["html", "htm"],
         }
     }
 }
@@ -162,42 +135,10 @@ fn closed(prism: Result<Prism, PrismError>, geometry: &Geometry) -> Result<Prism
     prism.map_err(|error| Failure::usage(format!("{}: {error}", geometry.finger.file)))
 }
 
-/// Draws the sheet of a finger in the format of the file.
-fn draw_sheet(request: &PrintRequest, geometry: &Geometry, out: &Path) -> Result<String, Failure> {
-    let write = match &*extension(out) {
-        "svg" => sheet::svg,
-        "html" | "htm" => sheet::html,
-        _ => {
-            let problem = format!("--out {}: must end in .svg or .html", out.display());
-            return Err(Failure::usage(problem));
-        }
-    };
+/// Draws the sheet of a finger.
+fn draw_sheet(request: &PrintRequest, geometry: &Geometry) -> Result<String, Failure> {
     let ribs = mechanics::compute(geometry)?;
     let measured = request.predicted_stiffness()?.map(|prediction| prediction.at_pad());
     let origin = &request.dir.as_deref().map_or(String::new(), study_name);
-    Ok(write(geometry, &SheetData { origin, ribs: &ribs, measured }))
-}
-
-/// Writes settings for a slicer, and beside them the surfaces of outline and base; returns the files of the surfaces.
-fn settings(out: &Path, geometry: &Geometry, text: &str) -> Result<Vec<PathBuf>, Failure> {
-    let title = export::title(geometry);
-    let stem = out.file_stem().unwrap_or_default().to_string_lossy();
-    let beside = |part: &str| out.with_file_name(format!("{stem}-{part}.stl"));
-    let [outline, base] = ["outline", "base"].map(beside);
-    let parts = [
-        (&outline, closed(Prism::outline(geometry), geometry)?.stl(&format!("{title}, outline"))),
-        (&base, closed(Prism::base(geometry), geometry)?.stl(&format!("{title}, solid base"))),
-    ];
-    // The user did not name these files, so others of that name are not overwritten.
-    for (file, content) in &parts {
-        if std::fs::read(file).is_ok_and(|found| found != *content) {
-            let problem = "exists with other contents; remove it, or give another --out";
-            return Err(Failure::usage(format!("{}: {problem}", file.display())));
-        }
-    }
-    write_file(out, text)?;
-    for (file, content) in &parts {
-        write_file(file, content)?;
-    }
-    Ok(vec![outline, base])
+    Ok(sheet::html(geometry, &SheetData { origin, ribs: &ribs, measured }))
 }

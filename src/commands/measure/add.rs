@@ -140,7 +140,7 @@ fn add(
     let unusable = |error| Failure::in_file(file, format!("cannot add a line: {error}"));
     let unwritable = |error| Failure::running(format!("{file}: cannot write: {error}"));
     // Locked while it is read and written, since others add lines, too.
-    let mut table = LockedFile::open(Path::new(file), LARGEST_INPUT).map_err(unusable)?;
+    let table = LockedFile::open(Path::new(file), LARGEST_INPUT).map_err(unusable)?;
     let before = parse(table.text(), file).map_err(Failure::input)?;
     let named = own_tasks(table.text());
     let is_new =

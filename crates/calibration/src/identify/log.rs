@@ -10,7 +10,7 @@ use std::fmt::Write as _;
 /// Smallest number of samples: 0.1 s at 500 Hz.
 pub const MIN_SAMPLES: usize = 50;
 /// Largest number of samples: 0.1 GB in memory.
-pub const MAX_SAMPLES: usize = 1_000_000;
+const MAX_SAMPLES: usize = 1_000_000;
 /// Longest duration of a log, s. It bounds the number of points after interpolation at regular times.
 pub const MAX_DURATION_S: f64 = 600.0;
 

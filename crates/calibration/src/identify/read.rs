@@ -2,7 +2,7 @@
 //! in the frame of the robot's base.
 
 use super::frame::Frame;
-use super::log::{COLUMNS, Log, LogSample, MAX_SAMPLES, TARGETS};
+use super::log::{COLUMNS, Log, LogSample, TARGETS};
 use crate::experiments::line::LARGEST_FORCE_N;
 use ask_tell::statistics::median;
 use input::files;
@@ -49,10 +49,6 @@ pub fn parse(text: &str, file: &str, frame: Option<&Frame>) -> Result<Log, Input
     let table = Table::new(header, frame).map_err(|problem| fault(at, problem))?;
     let mut samples: Vec<LogSample> = Vec::new();
     for (at, line) in lines.filter(|(_, line)| !ignored(line)) {
-        if samples.len() == MAX_SAMPLES {
-            let problem = format!("has more than {MAX_SAMPLES} samples; cut it to the attempt");
-            return Err(whole(problem));
-        }
         let mut sample = table.sample(at + 1, line).map_err(|problem| fault(at, problem))?;
         if let (None, Some(target)) = (table.rtde, &mut sample.target) {
             target.tilt = samples.first().map_or(sample.tcp.tilt, |first| first.tcp.tilt);

@@ -14,8 +14,6 @@ use std::path::Path;
 /// Columns of the table; further ones are keys of a space file.
 pub const COLUMNS: [&str; 7] =
     ["log", DENSITY_KEY, DIRECTION_KEY, "offset_mm", "outcome", "date", "note"];
-/// Largest total number of samples of all logs: 0.2 GB in memory.
-const MAX_SAMPLES: usize = 2_000_000;
 
 /// Parses a line; problems are recorded in `cells`.
 fn run_line(cells: &mut Cells<'_>, before: &[Run<String>]) -> Run<String> {
@@ -68,18 +66,10 @@ pub fn read(
         return Err(Place::file(file).fault(words).into());
     }
     let folder = path.parent().unwrap_or(Path::new(""));
-    let (mut runs, mut samples) = (Vec::new(), 0);
-    for Run { log, design, offset, outcome, line } in table {
+    let run = |Run { log, design, offset, outcome, line }: Run<String>| {
         let log = folder.join(log);
         let log: Log = read::parse(&text_of(&log)?, &log.display().to_string(), frame)?;
-        samples += log.samples.len();
-        if samples > MAX_SAMPLES {
-            let words = format!(
-                "the logs up to this line have more than {MAX_SAMPLES} samples; cut them to the attempts"
-            );
-            return Err(Place::file(file).line(line).key("log").fault(words).into());
-        }
-        runs.push(Run { log, design, offset, outcome, line });
-    }
-    Ok(runs)
+        Ok(Run { log, design, offset, outcome, line })
+    };
+    table.into_iter().map(run).collect()
 }

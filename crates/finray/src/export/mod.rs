@@ -1,4 +1,4 @@
-//! Files for printing a finger: a closed solid, its profile, a print sheet, and settings for slicers
+//! Files for printing a finger: a closed solid, its profile, a print sheet, and projects for slicers
 //! that fill the outline with their own infill.
 //!
 //! Files are in millimetres: X from the tip to the base, Y from the back (0) to the front side, Z along

@@ -1,22 +1,9 @@
-//! The profile of a finger as an SVG in true size, and as a DXF for CAD.
+//! The profile of a finger, drawn, and as a DXF for CAD.
 
 use super::rings;
 use crate::geometry::Geometry;
 use drawing::{Drawing, Style, View};
-use input::units::MM;
-use nalgebra::Point2;
 use std::fmt::Write;
-
-/// Returns an SVG of the profile, with one unit per millimetre and the front side up: for laser cutters and drawings.
-pub fn svg(geometry: &Geometry, title: &str) -> String {
-    let outline = &geometry.finger.outline;
-    let (length, width) = (outline.length / MM, outline.width / MM);
-    let mut drawing = Drawing::default();
-    drawing.title(title);
-    let view = View { origin: Point2::origin(), scale: 1.0 };
-    profile(&mut drawing, geometry, view, Style::fill("#33507a"));
-    drawing.svg([length, width], "mm")
-}
 
 /// Draws the profile in a view in mm.
 pub(super) fn profile(drawing: &mut Drawing, geometry: &Geometry, view: View, style: Style) {

@@ -14,62 +14,10 @@ use std::f64::consts::PI;
 
 /// Height of a layer, mm: as usual, half the line width, 0.4 mm in the published fingers.
 const LAYER: f64 = 0.2;
-/// Version of the settings of Cura 5.0; later versions accept them.
-const CURA_SETTING_VERSION: &str = "20";
-
-/// Returns the profile to import in Cura, where `infill_line_distance` overrides the density. As in the
-/// design, an angle of 0 is along Y, and a positive one turns the lines' upper end to +X.
-pub fn cura(geometry: &Geometry) -> String {
-    let (count, width) = walls(&geometry.finger);
-    let name = title(geometry).replace(['%', '°', ','], "").replace("  ", " ");
-    let notes = notes(geometry);
-    let (wall, line) = (mm(width), mm(geometry.finger.line_width));
-    let (density, distance) = (geometry.design.density_percent, mm(geometry.lines.pitch));
-    let angle = geometry.design.direction_deg;
-    format!(
-        "{notes}
-[general]
-version = 4
-name = {name}
-definition = fdmprinter
-
-[metadata]
-type = quality_changes
-quality_type = normal
-setting_version = {CURA_SETTING_VERSION}
-
-[values]
-layer_height = {LAYER}
-line_width = {line}
-wall_line_count = {count}
-wall_line_width_0 = {wall}
-wall_line_width_x = {wall}
-top_layers = 0
-bottom_layers = 0
-infill_pattern = lines
-infill_line_width = {line}
-infill_sparse_density = {density}
-infill_line_distance = {distance}
-infill_angles = [{angle}]
-zig_zaggify_infill = False
-infill_wall_line_count = 0
-infill_multiplier = 1
-gradual_infill_steps = 0
-"
-    )
-}
-
-/// Returns the configuration for PrusaSlicer, 2.4 or later: `prusa-slicer --load FILE`.
-pub fn prusaslicer(geometry: &Geometry) -> String {
-    let lines = settings(geometry).into_iter().filter(|(key, ..)| !key.is_empty());
-    let lines = lines.map(|(key, _, value)| format!("{key} = {value}\n"));
-    notes(geometry) + &lines.collect::<String>()
-}
-
 /// Returns the settings: the key in PrusaSlicer, the key in OrcaSlicer and Bambu Studio, and the value. A key is empty
 /// if the program has no such setting. All three programs define angle and line spacing in the same way. The fill
 /// pattern is `alignedrectilinear`, since `rectilinear` turns by 90 degrees from layer to layer.
-pub(super) fn settings(geometry: &Geometry) -> Vec<(&'static str, &'static str, String)> {
+pub fn settings(geometry: &Geometry) -> Vec<(&'static str, &'static str, String)> {
     let (count, width) = walls(&geometry.finger);
     let (wall, line) = (mm(width), mm(geometry.finger.line_width));
     // Density at the design's pitch: the spacing of lines that touch (the sides of their cross-section are
@@ -185,14 +133,4 @@ fn project(
 fn walls(finger: &PrintedFinger) -> (u32, f64) {
     let count = (finger.skin / (2.0 * finger.line_width) - 1e-9).ceil().max(1.0);
     (count as u32, finger.skin / count)
-}
-
-fn notes(geometry: &Geometry) -> String {
-    format!(
-        "# {}: settings for its outline without ribs; the slicer adds them.\n\
-         # Tip at low X, front at high Y, as in the file of the outline: do not turn it.\n\
-         # The solid base is a modifier with 100 % infill. The published fingers were printed with\n\
-         # lines of 0.4 mm; here walls are as wide as the skin of the finger file.\n",
-        title(geometry)
-    )
 }

@@ -90,7 +90,6 @@ enum RawMotion {
     Touch,
 }
 
-const MAX_PHASES: usize = 100;
 /// Largest radius of the contact patch that the torsional friction may represent, mm.
 const MAX_PATCH_MM: f64 = 100.0;
 
@@ -214,9 +213,6 @@ fn check_torsion(check: Check<'_>, friction: &Friction) -> Result<(), InputError
 fn strategy(check: Check<'_>, raw: Strategy<RawPhase>) -> Result<Strategy, InputError> {
     let key = "strategy.phase";
     let Strategy { tilt, start, rule, phases: raw } = raw;
-    if raw.len() > MAX_PHASES {
-        return check.fail(key, format!("there are {}; the maximum is {MAX_PHASES}", raw.len()));
-    }
     let phases: Vec<_> = raw.into_iter().map(|raw| phase(check, raw)).collect::<Result<_, _>>()?;
     if phases.last().is_none_or(|phase| phase.stage != Stage::Assembly) {
         return check.fail(key, "the last phase must have stage = \"assembly\"");

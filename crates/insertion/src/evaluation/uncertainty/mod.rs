@@ -194,12 +194,6 @@ impl Uncertainty {
         let raw: RawUncertainty = document.read()?;
         numbers::check_file("uncertainty", &table, file)?;
         let RawUncertainty { offset, yaw, friction, stiffness, clearance, grasp, .. } = raw;
-        for key in ["offset", "yaw", "friction", "stiffness", "clearance", "grasp"] {
-            if table[key]["source"].as_str().is_some_and(|source| source.trim().is_empty()) {
-                let problem = "is empty; name the source of the value";
-                return Check { file }.fail(&format!("{key}.source"), problem);
-            }
-        }
         Ok(Uncertainty {
             errors: Errors { offset, yaw, friction, stiffness, clearance, grasp },
             success: raw.success_rate,

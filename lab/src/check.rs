@@ -51,6 +51,9 @@ pub struct Arguments {
     /// Measured fingers of the windows
     #[arg(long, value_enum, default_value = "three", requires = "windows")]
     fingers: Fingers,
+    /// Robot of the windows
+    #[arg(long, value_name = "NAME", default_value = DEFAULT_ROBOT, requires = "windows")]
+    robot: String,
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -71,7 +74,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 impl Arguments {
     fn windows(&self) -> Result<(), Failure> {
-        let robot = files::robot(DEFAULT_ROBOT)?;
+        let robot = files::robot(&self.robot)?;
         let settings = if self.convergence { steps } else { searches };
         let engine = || self.engine.build(1.0);
         let tasks = tasks(&self.task)?.into_iter().map(|task| settings(task, &robot, engine()));

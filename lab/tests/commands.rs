@@ -50,6 +50,9 @@ fn the_quick_search_finds_the_ends_of_the_walk() {
 
 #[test]
 fn what_only_the_convergence_has_is_refused_without_it() {
-    lab(&["check", "--task", "usb"]).fails(2, &["--convergence", "--searches"]);
+    lab(&["check", "--robot", "rigid"]).fails(2, &["--convergence", "--searches"]);
     lab(&["check", "--convergence", "--engine", "fake"]).fails(2, &["fake"]);
+    lab(&["check", "--convergence", "--robot", "nobody"]).fails(2, &["nobody", "servo"]);
+    lab(&["check", "--convergence", "--robot", "ur5e", "--engine", "rapier"])
+        .fails(2, &["--engine direct"]);
 }

@@ -45,11 +45,18 @@ fn fault(file: &str, text: &str, mut error: Error, near: Option<&str>) -> InputE
 /// Returns the word nearest to the unknown key or word of a parser's message, of the accepted words and `more` words.
 fn nearest_key<'a>(message: &'a str, more: &[&'a str]) -> Option<&'a str> {
     [UNKNOWN, "unknown variant `"].into_iter().find(|begin| message.starts_with(begin))?;
-    // Those in backticks.
-    let words: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
+    let words = quoted(message);
     let (given, accepted) = words.split_first()?;
     shipped::nearest(given, &[accepted, more].concat())
 }
+
+/// Returns the words in backticks.
+fn quoted(message: &str) -> Vec<&str> {
+    message.split('`').skip(1).step_by(2).collect()
+}
+
+/// Document after the repair of a fault, with its next error.
+type Repaired<'a> = (Document<'a>, Option<Error>);
 
 impl<'a> Document<'a> {
     /// Returns the faults of a document of which `error` is the first one, as one error: [`MAX_FAULTS`] unknown keys at
@@ -82,7 +89,7 @@ impl<'a> Document<'a> {
         &self,
         error: &Error,
         near: Option<&str>,
-    ) -> Option<(Self, Option<Error>)> {
+    ) -> Option<Repaired<'a>> {
         let (at, mut document) = (error.span()?, self.clone());
         let name = near.filter(|near| !self.taken.contains(near));
         rename_first(&mut document.tree, &at, name).then(|| {

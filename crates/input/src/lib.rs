@@ -242,13 +242,13 @@ mod tests {
         let error = |text: &str| read::<Friction>(text, "task.toml").unwrap_err().to_string();
         let text = error("plug_socket = 0.3\nother = 0.3");
         assert!(!text.contains("mean"), "{text}");
-        // The missing key is reported, too.
+        // The only missing key, though it is not similar.
         let text = error("other = 0.3");
-        assert!(text.contains("`other`") && text.contains("missing field `plug_socket`"), "{text}");
+        assert!(text.matches("TOML").count() == 1 && text.contains("did you mean"), "{text}");
     }
 
     #[test]
-    fn all_unknown_keys_and_the_first_missing_one_are_reported_at_once() {
+    fn all_unknown_keys_and_a_missing_one_are_reported_at_once() {
         #[derive(Debug, serde::Deserialize)]
         #[serde(deny_unknown_fields)]
         #[expect(dead_code, reason = "only the names are read")]
@@ -264,22 +264,60 @@ mod tests {
         assert_eq!(error.place().line, Some(1));
         let text = error.to_string();
         let found: Vec<_> = text.lines().filter(|line| line.contains('`')).collect();
-        let expected = ["`nam`", "`other`", "`friction.plug_sockt`", "`mass_g`"];
+        let expected = ["`nam`", "`other`", "`friction.plug_sockt`", "`height_mm`"];
         let begin = |(line, key): (&&str, &str)| {
             line.split(" field ").nth(1).is_some_and(|of| of.starts_with(key))
         };
         assert!(found.len() == 4 && found.iter().zip(expected).all(begin), "{text}");
         assert!(text.contains("line 1,") && text.contains("did you mean `name`?"), "{text}");
+        assert!(text.contains("did you mean `mass_g`?"), "{text}");
         let line = "friction = [{ plug_sockt = 1, plug_scket = 2 }]";
         let text = format!("mass_g = 1\nname = 3\n{line}");
         let text = read::<Pair>(&text, "t.toml").unwrap_err().to_string();
         assert!(text.matches(line).count() == 2 && text.contains("| name = 3"), "{text}");
+        let text = "friction = []\nname = \"a\"\nheight_mm = 1\nbought_at = \"bought\"";
+        let text = read::<Pair>(text, "t.toml").unwrap_err().to_string();
+        assert!(text.contains("missing field `mass_g`") && !text.contains("mean"), "{text}");
         let many: String = (0..20).map(|i| format!("other_{i} = 1\n")).collect();
         let text = read::<Pair>(&many, "t.toml").unwrap_err().to_string();
         assert_eq!(text.matches("unknown field").count(), faults::MAX_FAULTS);
         let document = Document::parse("kind = 1\nknd = 2\nplug_socket = 1", "t.toml").unwrap();
         let error = document.without(&["kind"]).read::<Friction>().unwrap_err().to_string();
         assert!(error.ends_with("did you mean `kind`?"), "{error}");
+    }
+
+    #[test]
+    fn all_missing_keys_are_listed_up_to_the_first_wrong_value() {
+        #[derive(Debug, serde::Deserialize)]
+        #[expect(dead_code, reason = "only the names are read")]
+        struct Part {
+            x_mm: [f64; 2],
+            mass_g: f64,
+            axis: String,
+        }
+        #[derive(Debug, serde::Deserialize)]
+        #[expect(dead_code, reason = "only the names are read")]
+        struct Plug {
+            part: Vec<Part>,
+            height_mm: f64,
+        }
+        let listed = |text: &str| -> Vec<String> {
+            let text = read::<Plug>(text, "t.toml").unwrap_err().to_string();
+            let fault = |line: &&str| line.starts_with("missing") || line.starts_with("invalid");
+            text.lines().filter(fault).map(str::to_owned).collect()
+        };
+        let text = "[[part]]\naxis = \"x\"\n[[part]]\nmass_g = 2.0";
+        let missing = ["part.x_mm", "part.mass_g", "height_mm", "part.x_mm", "part.axis"];
+        let mut found = listed(text);
+        let mut expected = missing.map(|key| format!("missing field `{key}`")).to_vec();
+        found.sort();
+        expected.sort();
+        assert_eq!(found, expected);
+        let found = listed(&text.replace("2.0", "[2]"));
+        assert_eq!(found.last().unwrap(), "missing field `part.mass_g`", "{found:?}");
+        assert_eq!(found[0], "invalid type: sequence, expected f64", "{found:?}");
+        // Each fault takes several readings of the file.
+        assert_eq!(listed(&format!("{text}\n#{}", " ".repeat(16 << 10))).len(), 1);
     }
 
     #[test]

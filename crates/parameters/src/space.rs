@@ -323,10 +323,21 @@ source = "paper"
     }
 
     #[test]
-    fn a_source_is_not_needed() {
+    fn all_faults_are_reported_at_once_and_a_source_is_not_needed() {
         let plain = GOOD.replace("source = \"paper\"\n", "");
         let space = Space::parse(&plain, "s.toml").unwrap();
         assert_eq!(toml::from_str::<Space>(&toml::to_string(&space).unwrap()).unwrap(), space);
+        let text = "name = \"s\"\n[[parameter]]\nlow = 10.0\n\
+                    [[parameter]]\nkey = \"task.friction.plug_sokcet\"\nhigh = 1.0";
+        let error = Space::parse(text, "s.toml").unwrap_err().to_string();
+        for key in ["parameter.key", "parameter.high", "parameter.step"] {
+            assert_eq!(error.matches(&format!("missing field `{key}`")).count(), 1, "{error}");
+        }
+        assert_eq!(
+            error.matches("did you mean `task.friction.plug_socket`?").count(),
+            1,
+            "{error}"
+        );
     }
 
     proptest! {

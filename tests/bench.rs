@@ -285,7 +285,7 @@ fn a_finger_of_a_task_of_ones_own_is_measured_without_naming_it_twice() {
     assert!(next.succeeds().starts_with(best), "{}", next.stdout);
     // Predictions carry their interval; two measured fingers are too few to judge the intervals.
     next.says(&[" % likely to be wider than the best measured, else keep that", "(80 %: "]);
-    next.says(&["2 fingers, too few to judge the 80 % intervals"]);
+    next.says(&["measurement: 2 fingers,\n", "too few to judge the 80 % intervals"]);
     assert!(next.stdout.lines().all(|line| line.chars().count() <= 80), "{}", next.stdout);
     // A study recommends the finger that `next` would choose without a further print.
     let found = line(&format!("next --json {few} own/bench.csv")).json();

@@ -193,7 +193,7 @@ def trial(
         set: A number of the task or the finger, as in spaces/codesign.toml.
         repeat: Repeat N times with friction varied within 10 %, start within 0.02 mm, half the step in
             every other one, and a cell's numbers drawn.
-        record: Record the trial: a page that plays it, or a table of every millisecond.
+        record: Record the trial: a page that plays it.
         plot: Draw force against depth.
         log: Write force and pose at 500 Hz, as a robot logs them, from the start of the search.
         probe: Slide the part on a flat plate instead of inserting it: 8 mm along y and back at 5 N, for
@@ -323,21 +323,19 @@ def compare(
     studies: Iterable[StrPath],
     *,
     svg: StrPath | None = None,
-    html: StrPath | None = None,
 ) -> Comparison:
     """Compare optimizers over studies of the same task and objective, as ``optimize compare`` does.
 
     Args:
         studies: Folders of the studies; several seeds of an optimizer give median and quartiles.
         svg: Draw the best value so far of each optimizer.
-        html: Write table and chart as an HTML page.
 
     Raises:
         InputError: A value or file is invalid; :class:`TaskError` if it is the task.
         StudyError: The command fails at run time or cannot write a file.
         Interrupted: Ctrl-C.
     """
-    return called("compare", {"dirs": studies, "svg": svg, "html": html}, Comparison)
+    return called("compare", {"dirs": studies, "svg": svg}, Comparison)
 
 
 @checked
@@ -808,7 +806,7 @@ def new_task(
 
     With plug, round or pins, start, tilt, strokes and success depth are derived from the geometry; with
     like as well, friction and grasp force are those of that task. With like alone the file is a copy of
-    that task. Without any of these the task is a USB-C plug.
+    that task.
 
     Args:
         name: Name of the task: letters, digits, - and _.
@@ -881,6 +879,7 @@ def tune_task(
     *,
     robot: RobotName | StrPath = "servo",
     engine: Engine = "direct",
+    budget: int = 150,
     seed: int = 0,
     max_force_n: float | None = None,
     max_speed_mm_per_s: float | None = None,
@@ -892,13 +891,15 @@ def tune_task(
 
     First the start is taught with a medium finger; then the strategies of the shipped tasks are tried,
     scaled to this opening; then tilt, strokes, preload and push speed are optimized for the smallest range
-    of a soft, a medium and a stiff finger. Exit code 1 if nothing inserts. Ctrl-C writes the best strategy
-    so far.
+    of a soft, a medium and a stiff finger. Exit code 1 if nothing inserts. Ctrl-C or SIGTERM writes the
+    best strategy so far.
 
     Args:
         task: Task file, which is rewritten; or the name of a shipped task, with out.
         robot: see `optimize robots`, or the path of a robot file.
         engine: Contact engine.
+        budget: Largest number of windows to measure; start, shipped strategies and final checks are not
+            shortened.
         seed: Seed of the search.
         max_force_n: Largest force between plug and socket, N [default: limits.force_n of the task, or the
             robot's stop force].
@@ -913,6 +914,6 @@ def tune_task(
         Interrupted: Ctrl-C.
     """
     return called("task tune", {
-        "file": task, "robot": robot, "engine": engine, "seed": seed, "max_force_n": max_force_n,
+        "file": task, "robot": robot, "engine": engine, "budget": budget, "seed": seed, "max_force_n": max_force_n,
         "max_speed_mm_per_s": max_speed_mm_per_s, "out": out, "dry_run": dry_run, "svg": svg,
     }, Tuned)

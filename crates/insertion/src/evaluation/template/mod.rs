@@ -203,7 +203,11 @@ mod tests {
             ),
             ("task.strategy.start_mm", 1.0, "`task.strategy.start_mm.` continues with x, y, z"),
             ("task.strategy.phase.side.motion", 1.0, "continues with move_mm, settle_s, speed_mm_"),
-            ("tilt", 1.0, "begins with `finger`, `infill_density_percent`, `infill_direction_deg` or"),
+            (
+                "tilt",
+                1.0,
+                "begins with `finger`, `infill_density_percent`, `infill_direction_deg` or",
+            ),
             ("task.friction.plug_sokcet", 0.2, "did you mean `task.friction.plug_socket`?"),
         ] {
             refused(apply(&[(key, value)]), &[words]);

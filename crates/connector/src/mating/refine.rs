@@ -316,22 +316,22 @@ impl Fine {
         let lowered = |raised: i32| {
             let by = Some(missed - f64::from(raised) * DROP).filter(|by| *by > SEATED)?;
             let (lower, play) = self.between_walls(Pose { z: pose.z - by, ..pose.clone() })?;
-            let free = play.iter().all(|play| *play >= -2.0 * TOLERANCE);
-            let springs = free && self.interference(&lower) <= MAX_SPRING;
+            let springs = self.interference(&lower) <= MAX_SPRING;
             springs.then(|| (self.with_depth(lower), play))
         };
         (0..4).find_map(lowered)
     }
 
     /// Returns a pose moved to the middle between the walls that face the plug, and the play between them along x and y,
-    /// m: without springs and ribs on less than half of a wall. `None` without walls on four sides.
+    /// m: without springs and ribs on less than half of a wall. `None` without walls on four sides that leave it room.
     pub fn between_walls(&self, pose: Pose) -> Option<(Pose, [f64; 2])> {
         let most = (2.0 * self.max_play / self.step).ceil() as i32;
         let (at, z) = (self.cells(&pose), pose.z as f32 + LEVEL);
         let [a, b, c, d] = self.sides.gaps(&self.upper, at, z, most);
         let [a, b, c, d] = [a?, b?, c?, d?].map(|gap| f64::from(gap) * self.step);
-        let [x, y] = pose.shift;
-        Some((Pose { shift: [x + (a - b) / 2.0, y + (c - d) / 2.0], ..pose }, [a + b, c + d]))
+        let ([x, y], play) = (pose.shift, [a + b, c + d]);
+        let middle = Pose { shift: [x + (a - b) / 2.0, y + (c - d) / 2.0], ..pose };
+        play.iter().all(|play| *play >= -2.0 * TOLERANCE).then_some((middle, play))
     }
 
     /// Returns the cells that both parts fill at a pose.

@@ -39,7 +39,7 @@ pub struct LogSample {
 pub struct Log {
     /// Path of the file as given.
     pub file: String,
-    /// At least [`MIN_SAMPLES`] and at most [`MAX_SAMPLES`] samples.
+    /// At least [`MIN_SAMPLES`] and at most `MAX_SAMPLES` samples.
     pub samples: Vec<LogSample>,
 }
 

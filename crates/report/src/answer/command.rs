@@ -120,13 +120,15 @@ fn evaluate(answer: &Answer, inputs: &InputArguments) -> Option<String> {
 /// changes a user's own file, but writes a new one for a task given as text.
 pub fn repair(record: &StudyRecord, dir: &Path, place: usize) -> (String, &'static str) {
     let (inputs, role) = (InputArguments { record, dir }, format!("task_{}", place + 1));
+    let robot = inputs.changed_setup().into_iter().find(|word| word.starts_with("--robot "));
+    let robot = robot.map_or(String::new(), |robot| format!(" {robot}"));
     if let Some(shipped) = inputs.shipped(&role, TASKS) {
-        return (format!("optimize task check {shipped}"), "find out why nothing inserts");
+        return (format!("optimize task check {shipped}{robot}"), "find out why nothing inserts");
     }
     let file = inputs.own_file(place).unwrap_or_else(|| {
         format!("{} --out {}.toml", inputs.input(&role, TASKS), record.config.tasks[place])
     });
-    (format!("optimize task tune {file}"), "find a start and a strategy that insert")
+    (format!("optimize task tune {file}{robot}"), "find a start and a strategy that insert")
 }
 
 /// Returns whether the first task of a study is not a shipped one.

@@ -235,8 +235,25 @@ pub fn paths(kind: Kind) -> Vec<String> {
 /// Returns the error message for a number that is out of the bounds of its path; `None` if it is within them or the
 /// path is not in the table.
 pub fn problem(path: &str, value: f64) -> Option<String> {
-    let (_, number) = filled_paths(path).find(|(filled, _)| filled == path)?;
+    let number = NUMBERS.iter().find(|number| matches(number.pattern, path))?;
     out_of_bounds(path, value, number.bounds)
+}
+
+/// Returns whether a path matches a pattern; a name in place of `*` may contain dots. Does not expand patterns, since
+/// every number of every file is looked up.
+fn matches(pattern: &str, path: &str) -> bool {
+    let split = pattern.split_once('.');
+    let (word, rest) = (split.map_or(pattern, |(word, _)| word), split.map(|(_, rest)| rest));
+    let goes_on = |after: &str| match (rest, after.strip_prefix('.')) {
+        (Some(rest), Some(path)) => matches(rest, path),
+        (rest, _) => rest.is_none() && after.is_empty(),
+    };
+    if word == "*" {
+        let mut ends = path.match_indices('.').map(|(end, _)| end).chain([path.len()]);
+        ends.any(|end| goes_on(&path[end..]))
+    } else {
+        word.split('|').any(|one| path.strip_prefix(one).is_some_and(goes_on))
+    }
 }
 
 /// Returns every path of the table with its entry; each `*` is replaced by the word of `path` at its position.

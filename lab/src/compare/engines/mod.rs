@@ -9,9 +9,9 @@ mod tests;
 
 use super::pairs::{self, WindowPair};
 use super::{Setting, Subject, TaskSettings, each};
-use ask_tell::statistics::mean;
+use ask_tell::statistics::{mean, quantile, sorted};
 use insertion::evaluation::tolerance;
-use insertion::{Grasp, Measurement, OffsetStep, Outcome, Window, grid_mm};
+use insertion::{Grasp, Measurement, OffsetStep, Outcome, Trial, Window, grid_mm};
 use report::text_table;
 use std::collections::BTreeSet;
 
@@ -43,6 +43,8 @@ pub struct TrialPair {
     /// Distance beyond the nearer end of the first engine's window, grid steps; negative inside.
     pub from_end: OffsetStep,
     pub outcomes: [Outcome; 2],
+    /// Distance between the final positions of the plug's tip, mm, if both inserted.
+    pub tip_mm: Option<f64>,
 }
 
 impl TrialPair {
@@ -90,16 +92,31 @@ fn in_both(subject: &Subject, settings: &[Setting; 2], reduced: bool) -> CrossCh
     let reference = settings[0].evaluate(&subject.finger);
     let window = &reference.window;
     let grasped = settings.each_ref().map(|setting| setting.rig.grasp(Grasp::of(&subject.finger)));
-    let trial = |offset: OffsetStep| TrialPair {
-        subject: subject.clone(),
-        offset,
-        from_end: (window.negative_steps - offset).max(offset - window.positive_steps),
-        outcomes: grasped.each_ref().map(|one| one.trial(tolerance::offset(offset)).outcome),
+    let trial = |offset: OffsetStep| {
+        let trials = grasped.each_ref().map(|grasped| grasped.trial(tolerance::offset(offset)));
+        TrialPair {
+            subject: subject.clone(),
+            offset,
+            from_end: (window.negative_steps - offset).max(offset - window.positive_steps),
+            outcomes: trials.each_ref().map(|trial| trial.outcome),
+            tip_mm: tip_distance(&trials),
+        }
     };
     let trials = offsets(window, reduced).into_iter().map(trial).collect();
     let pair =
         || WindowPair::new(subject, settings, [&reference, &settings[1].evaluate(&subject.finger)]);
     CrossCheck { trials, windows: (!reduced).then(pair).into_iter().collect() }
+}
+
+/// Returns the distance between the final positions of the plug's tip, mm; `None` unless both inserted.
+fn tip_distance(trials: &[Trial; 2]) -> Option<f64> {
+    let tip = |trial: &Trial| match trial.outcome {
+        Outcome::Inserted => trial.phases.last().map(|end| end.tip_mm),
+        _ => None,
+    };
+    let [a, b] = trials.each_ref().map(tip);
+    let square: f64 = a?.iter().zip(b?).map(|(a, b)| (a - b) * (a - b)).sum();
+    Some(square.sqrt())
 }
 
 /// Returns tables and verdicts for the terminal.
@@ -121,6 +138,13 @@ pub fn text(check: &CrossCheck, [first, second]: [&str; 2]) -> String {
         total - others.len(),
         verdict(check.agreement() >= AGREEMENT)
     );
+    let tips = sorted(check.trials.iter().filter_map(|pair| pair.tip_mm));
+    let count = tips.len();
+    if let (Some(median), Some(largest)) = (quantile(&tips, 0.5), tips.last()) {
+        text += &format!(
+            "tips of the {count} plugs that both insert: {median:.3} mm apart (median), {largest:.3} mm at most\n"
+        );
+    }
     if others.is_empty() {
         return text;
     }

@@ -30,6 +30,7 @@ fn a_disagreement_is_counted_and_listed() {
         offset,
         from_end: 1,
         outcomes: [Outcome::Failed(FailureClass::Jammed), second],
+        tip_mm: None,
     };
     let missed = Outcome::Failed(FailureClass::PlugMissed);
     // Trials that fail in different classes agree.

@@ -149,6 +149,14 @@ fn a_study_with_measurements_leads_with_the_finger_that_is_best_on_the_bench() {
     // Printed and measured before, it is not to be printed again.
     assert_eq!(found["answer"]["verdict"], "print");
     assert_eq!(found["answer"]["finger"], best["values"]);
+    // A finger that exists is used until the better one is printed and measured.
+    let answer = &found["answer"];
+    assert_eq!(answer["use_now"]["range_mm"], 8.6, "{answer}");
+    let headline = answer["headline"].as_str().expect("words");
+    assert!(headline.ends_with("now: the best of 11 measured fingers, 8.6 mm on a robot"));
+    let expectation = answer["expectation"].as_str().expect("words");
+    assert!(expectation.starts_with("largest expected range: "), "{expectation}");
+    assert!(expectation.contains(" at 80 %), not measured; "), "{expectation}");
     let kept = folder.read("a/bench.json");
     let mut known: serde_json::Value = serde_json::from_str(&kept).expect("JSON");
     known["ranges"] = serde_json::json!([[best["values"], 9.9]]);
@@ -156,15 +164,16 @@ fn a_study_with_measurements_leads_with_the_finger_that_is_best_on_the_bench() {
     let before = folder.study("a", 12, &json).json();
     assert_eq!(before["answer"]["verdict"], "measured_before", "{before}");
     let headline = before["answer"]["headline"].as_str().expect("words");
-    assert!(headline.ends_with("you measured 9.9 mm"), "{headline}");
-    assert!(headline.contains(", which you have printed: "), "{headline}");
+    assert!(headline.ends_with("now: the only measured finger, 9.9 mm on a robot"), "{headline}");
+    let expectation = before["answer"]["expectation"].as_str().expect("words");
+    assert!(expectation.starts_with("expect "), "{expectation}");
     let words = "another print is worth it";
     assert!(before["answer"]["next"]["why"].as_str().is_some_and(|why| why.contains(words)));
     known["ranges"] = serde_json::json!([]);
     known["bounds"] = serde_json::json!([[best["values"], 1.5]]);
     folder.file("a/bench.json", known.to_string());
     let bound = folder.study("a", 12, &json).json()["answer"]["headline"].to_string();
-    assert!(bound.contains("you measured 1.5 mm or more"), "{bound}");
+    assert!(bound.contains("measured finger, 1.5 mm or more on a robot"), "{bound}");
     folder.file("a/bench.json", kept);
     // The search did not know of it.
     let plain = folder.study("b", 12, &["--task", "ket8", "--json"]).json();

@@ -8,9 +8,8 @@ use crate::setup::words::parse_at_least_0;
 use crate::{Context, Failure, Output, command};
 use ask_tell::stream::stream;
 use calibration::bench::Settings;
-use calibration::calibrate::leave_one_out;
+use calibration::calibrate::{TaskResult, leave_one_out};
 use calibration::next::{Advice, BestMeasured, Choice, Fingers, Print, advise};
-use calibration::verdict::coverage;
 use input::shipped::Source;
 use insertion::Design;
 use insertion::outcome::STOP_REMEDY;
@@ -64,6 +63,9 @@ pub struct Advised {
     /// contains the measured range.
     loo_designs: usize,
     loo_inside: usize,
+    /// Whether the predictions can be trusted within their intervals, and advice with its reason.
+    reliable: bool,
+    verdict: String,
     /// Fingers that were printed, but of which no range could be measured.
     not_measurable: Vec<Design>,
     /// Number of simulations with a robot stop in most insertions, and of all simulations.
@@ -121,14 +123,19 @@ impl command::Request for Request {
         let (settings, dimension) = (Settings { done: &done, ..settings }, layout.dimension());
         let left_out = leave_one_out((&benches, 0), &subject.designs, dimension, &settings);
         context.check()?;
+        let left_out = TaskResult { predictions: Vec::new(), left_out };
+        let accuracy = left_out.accuracy(subject.emulator.error_mm);
+        let verdict = left_out.verdict();
         let [stopped_simulations, simulations] = subject.emulator.stopped();
         let value = Advised {
             task: subject.task.clone(),
             stopped_simulations,
             simulations,
             measured: subject.measured().len() - failed.len(),
-            loo_designs: left_out.len(),
-            loo_inside: left_out.iter().filter(|one| one.inside()).count(),
+            loo_designs: accuracy.fingers,
+            loo_inside: accuracy.inside,
+            reliable: verdict.reliable,
+            verdict: verdict.text,
             not_measurable: failed.iter().map(|&number| subject.designs[number].clone()).collect(),
             measurements_missing: missing,
             advice,
@@ -162,7 +169,7 @@ fn print(print: &Print, verb: &str, when: &str) -> String {
 
 impl Advised {
     fn text(&self, measurements: &str, print_cost_mm: f64) -> String {
-        let Advised { task, advice, loo_designs, loo_inside, .. } = self;
+        let Advised { task, advice, .. } = self;
         let [stopped, of] = [self.stopped_simulations, self.simulations];
         let not_usable = (stopped > of / 2).then(|| {
             format!(
@@ -179,6 +186,9 @@ impl Advised {
                 format!("No finger to use yet: none measured on {task}{file}\n")
             }
         };
+        if self.loo_designs > 0 {
+            text += &format!("predictions   {}\n", self.verdict);
+        }
         if advice.stop {
             text += &format!("Stop printing: no print is expected to gain {print_cost_mm} mm\n");
         }
@@ -190,10 +200,6 @@ impl Advised {
             };
         }
         text += &self.wider(print_cost_mm);
-        if *loo_designs > 0 {
-            let coverage = coverage(*loo_inside, *loo_designs);
-            text += &format!("predicted without their own measurement: {coverage}\n");
-        }
         if !self.not_measurable.is_empty() {
             let fingers = self.not_measurable.iter().map(design).collect::<Vec<_>>().join("; ");
             text += &format!("printed, not measurable: {fingers}\n");

@@ -88,7 +88,7 @@ pub fn next(answer: &Answer, dir: &Path) -> (String, &'static str) {
                 Trust::Simulated { .. } => "bench.csv".to_owned(),
             };
             let why = match (verdict, trust) {
-                (Verdict::MeasuredBefore { .. }, _) => "check whether another print is worth it",
+                (Verdict::MeasuredBefore(_), _) => "check whether another print is worth it",
                 (_, Trust::Calibrated { .. }) => "choose the prints with the largest expected gain",
                 (_, Trust::Published { .. }) => "choose the first prints from measurements as well",
                 (_, Trust::Simulated { .. }) => "choose prints; measure add takes their ranges",

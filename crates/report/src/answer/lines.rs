@@ -7,7 +7,7 @@ use calibration::rank_correlation::{Order, RankCorrelation};
 use calibration::verdict::coverage;
 use insertion::evaluation::robustness::firm::REPEATS;
 use insertion::outcome::{STOP_REMEDY, stop_words};
-use insertion::{Design, Evaluation, Measure, Outcome, Prediction, Robot, Variable, grid_mm};
+use insertion::{Evaluation, Measure, Outcome, Prediction, Robot, Variable, grid_mm};
 use parameters::label;
 use std::iter;
 use study::{BenchPrediction, ByRibs, Recorded, StudyRecord};
@@ -43,11 +43,9 @@ pub fn brief(answer: &Answer) -> Vec<Line> {
     lines
 }
 
-/// Returns the measured finger with the largest range. Without measurements of the user it is a published one, with its
-/// simulated range and whether the simulation ranks the published fingers like the robot.
+/// Returns the best published finger with its simulated range, and whether the simulation ranks the published fingers
+/// like the robot, unless the user's measurements are known.
 pub fn measured(answer: &Answer) -> Vec<Line> {
-    let best =
-        |design: &Design, mm: f64| format!("best {}: {}", words::design(design), self::mm(mm));
     let compared = |found: &RankCorrelation| {
         let RankCorrelation { spearman, fingers, source, best: finger, .. } = found;
         let order = match found.order() {
@@ -56,18 +54,16 @@ pub fn measured(answer: &Answer) -> Vec<Line> {
             Order::Opposite => "opposite to the robot",
         };
         let on = words::on(&answer.record.config, &found.task);
-        let (best, model) = (best(&finger.design, finger.measured_mm), mm(finger.simulated_mm));
+        let (best, model) = (words::design(&finger.design), mm(finger.simulated_mm));
+        let measured = mm(finger.measured_mm);
         let ranking =
             format!("the model ranks {fingers} fingers {order} (Spearman {spearman:+.2})");
-        line("measured", format!("{best}{on} ({source} {model}); {ranking}"))
+        line("measured", format!("best {best}: {measured}{on} ({source} {model}); {ranking}"))
     };
     match (answer.verdict.finger(), &answer.record.on_bench) {
-        (None, _) => Vec::new(),
-        (_, None) => answer.rank_correlations.iter().map(compared).collect(),
-        (_, Some(_)) => {
-            let best = answer.best_measured().map(|(of, mm)| line("measured", best(of, *mm)));
-            best.into_iter().collect()
-        }
+        (Some(_), None) => answer.rank_correlations.iter().map(compared).collect(),
+        // The headline names the best measured finger.
+        _ => Vec::new(),
     }
 }
 

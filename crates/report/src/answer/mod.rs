@@ -12,11 +12,12 @@ mod trust;
 mod verdict;
 pub mod words;
 
+use ask_tell::statistics::mean;
 use calibration::next::BestMeasured;
 use calibration::rank_correlation::{Order, RankCorrelation, errors_percent, rank_correlation};
 use input::shipped::TASKS;
 use insertion::{Design, Evaluation, Measure};
-use study::{FINGER, Recorded, StudyConfig, StudyRecord, Volume, Walked, volume};
+use study::{BenchPrediction, FINGER, Recorded, StudyConfig, StudyRecord, Volume, Walked, volume};
 
 pub use force::ExcessForce;
 use recommended::firm_range_mm;
@@ -108,14 +109,18 @@ impl<'a> Answer<'a> {
 
     /// Returns the result of the search, with the number of evaluations of an unfinished study.
     fn found(&self) -> String {
+        let found = self.not_usable().or_else(|| self.simulated());
+        found.unwrap_or_else(|| self.verdict.headline()) + &self.unfinished()
+    }
+
+    /// Returns the number of evaluations of an unfinished study, in parentheses; else nothing.
+    fn unfinished(&self) -> String {
         let StudyRecord { config, evaluations, .. } = self.record;
-        let done = || match evaluations.len() as u64 >= config.budget {
+        match evaluations.len() as u64 >= config.budget {
+            _ if !self.record.unfinished() => String::new(),
             true => " (confirmation incomplete)".to_owned(),
             false => format!(" (unfinished, after {})", config.counted(evaluations.len())),
-        };
-        let found = self.not_usable().or_else(|| self.simulated());
-        found.unwrap_or_else(|| self.verdict.headline())
-            + &self.record.unfinished().then(done).unwrap_or_default()
+        }
     }
 
     /// Returns the name of the verdict in JSON.
@@ -187,10 +192,16 @@ impl<'a> Answer<'a> {
         self.measured.iter().max_by(|(_, a), (_, b)| a.total_cmp(b))
     }
 
-    /// Returns the best measured finger, if measurements do not support the best one in simulation, with which the robot
+    /// Returns the best measured finger: that of the user's measurements, else the best published one, if it is better
+    /// supported than the best one in simulation.
+    pub fn use_now(&self) -> Option<BestMeasured> {
+        self.record.on_bench.as_ref().map_or_else(|| self.best_published(), best_on_bench)
+    }
+
+    /// Returns the best published finger, if measurements do not support the best one in simulation, with which the robot
     /// does not stop, and only the range matters: the published fingers have no other measured values. `None` for a user's
     /// task or finger file, of which they are not.
-    pub fn use_now(&self) -> Option<BestMeasured> {
+    fn best_published(&self) -> Option<BestMeasured> {
         let StudyConfig { objective, constraints, conclusion, provenance, .. } =
             &self.record.config;
         let shipped = |file: &String| TASKS.iter().any(|task| task.file == file);
@@ -236,4 +247,25 @@ impl<'a> Answer<'a> {
             None => self.design_to_print().map(|design| (finger, design.tasks())),
         }
     }
+}
+
+/// Returns the measured finger with the largest range, or lower bound of it; the mean, if it was measured several times.
+fn best_on_bench(bench: &BenchPrediction) -> Option<BestMeasured> {
+    let ranges = bench.ranges.iter().map(|(design, mm)| (design, *mm, false));
+    let bounds = bench.bounds.iter().filter_map(|(design, mm)| Some((design, (*mm)?, true)));
+    let mut fingers: Vec<(&Design, Vec<f64>, bool)> = Vec::new();
+    for (design, range_mm, at_least) in ranges.chain(bounds) {
+        match fingers.iter_mut().find(|(of, ..)| *of == design) {
+            Some((_, own, bound)) => {
+                own.push(range_mm);
+                *bound |= at_least;
+            }
+            None => fingers.push((design, vec![range_mm], at_least)),
+        }
+    }
+    let count = fingers.len();
+    let one = |(design, own, at_least): (_, Vec<f64>, _)| Some((design, mean(own)?, at_least));
+    let best = fingers.into_iter().filter_map(one).max_by(|a, b| a.1.total_cmp(&b.1));
+    let (design, range_mm, at_least): (&Design, f64, bool) = best?;
+    Some(BestMeasured { design: design.clone(), range_mm, at_least, fingers: count })
 }

@@ -2,10 +2,9 @@
 
 use super::words::{design as finger, evaluated, interval, mm, outcome, span};
 use super::{Answer, Recommended, Ties};
-use ask_tell::statistics::mean;
 use insertion::outcome::stop_words;
 use insertion::{Design, Evaluation, Measure};
-use study::{Recorded, StudyRecord, nearest};
+use study::{BenchFinger, Recorded, StudyRecord, nearest};
 
 /// Share of the space near tied designs ([`Ties::share`]) from which on any of them is recommended.
 const MIN_SHARE: f64 = 0.5;
@@ -23,14 +22,7 @@ pub enum Verdict<'a> {
         of: usize,
     },
     /// Use a finger that has already been printed and measured.
-    MeasuredBefore {
-        /// The finger.
-        design: &'a Design,
-        /// Its measured range, mm; `None` if only a lower bound or nothing is known.
-        range_mm: Option<f64>,
-        /// Lower bound of its range, mm, if the range is not known.
-        at_least_mm: Option<f64>,
-    },
+    MeasuredBefore(&'a Design),
     /// Choose from a Pareto front.
     Choose {
         /// The best in the first objective.
@@ -61,16 +53,11 @@ impl<'a> Verdict<'a> {
         }
         if let Some(best) = answer.record.on_bench.as_ref().and_then(|found| found.best.first()) {
             let design = &best.design;
-            let own = answer.measured.iter().filter(|(measured, _)| measured == design);
-            // A finger may be measured on several days.
-            let range_mm = mean(own.map(|(_, range_mm)| *range_mm));
             let mut bounds = answer.record.on_bench.iter().flat_map(|found| &found.bounds);
-            let bound = bounds.find(|(printed, _)| printed == design).map(|(_, mm)| *mm);
-            return match (range_mm, bound) {
-                (None, None) => Verdict::Print(design),
-                (range_mm, bound) => {
-                    Verdict::MeasuredBefore { design, range_mm, at_least_mm: bound.flatten() }
-                }
+            let printed = bounds.any(|(printed, _)| printed == design);
+            return match printed || answer.on_robot(design).is_some() {
+                true => Verdict::MeasuredBefore(design),
+                false => Verdict::Print(design),
             };
         }
         let Some(found) = &answer.recommended else { return Verdict::NoneFeasible };
@@ -91,7 +78,7 @@ impl<'a> Verdict<'a> {
         match self {
             Verdict::Print(_) => "print",
             Verdict::Any { .. } => "any",
-            Verdict::MeasuredBefore { .. } => "measured_before",
+            Verdict::MeasuredBefore(_) => "measured_before",
             Verdict::Choose { .. } => "choose",
             Verdict::NothingInserts { .. } => "nothing_inserts",
             Verdict::NoneFeasible => "none_feasible",
@@ -102,8 +89,8 @@ impl<'a> Verdict<'a> {
     pub fn finger(&self) -> Option<&'a Design> {
         match *self {
             Verdict::Print(design)
+            | Verdict::MeasuredBefore(design)
             | Verdict::Any { safe: design, .. }
-            | Verdict::MeasuredBefore { design, .. }
             | Verdict::Choose { first: design, .. } => Some(design),
             Verdict::NothingInserts { .. } | Verdict::NoneFeasible => None,
         }
@@ -116,15 +103,7 @@ impl<'a> Verdict<'a> {
             Verdict::Any { safe, of } => {
                 format!("Any of {of} fingers will do; by default print {}", finger(safe))
             }
-            Verdict::MeasuredBefore { design, range_mm, at_least_mm } => {
-                let measured = match (range_mm, at_least_mm) {
-                    (Some(range_mm), _) => format!("you measured {}", mm(*range_mm)),
-                    (None, Some(least_mm)) => format!("you measured {} or more", mm(*least_mm)),
-                    (None, None) => "you measured no range".to_owned(),
-                };
-                let finger = finger(design);
-                format!("Use the finger with {finger}, which you have printed: {measured}")
-            }
+            Verdict::MeasuredBefore(_) => "No finger to use yet: no range was measured".to_owned(),
             Verdict::Choose { first, of: 1 } => {
                 format!("Print the finger with {}: best in all objectives", finger(first))
             }
@@ -141,9 +120,7 @@ impl<'a> Verdict<'a> {
 /// If the headline names a measured finger, the result of the search comes first.
 pub fn expectation(answer: &Answer) -> String {
     if let Some(best) = answer.record.on_bench.as_ref().and_then(|found| found.best.first()) {
-        let [range, low, high] = [best.range_mm, best.low_mm, best.high_mm];
-        let trust = answer.trust.reason();
-        return format!("expect {} ({low:.1} to {high:.1} at 80 %); {trust}", mm(range));
+        return on_bench(answer, best);
     }
     if let Verdict::NothingInserts { nearest, fails, .. } = &answer.verdict {
         let ends = |found: &&Evaluation| {
@@ -164,6 +141,23 @@ pub fn expectation(answer: &Answer) -> String {
             format!("{best}{each}; {}", answer.trust.reason())
         }
     }
+}
+
+/// Returns the largest expected range on the bench, with the finger, unless the headline names it.
+fn on_bench(answer: &Answer, best: &BenchFinger) -> String {
+    let [range, low, high] = [best.range_mm, best.low_mm, best.high_mm];
+    let expected = format!("{} ({low:.1} to {high:.1} at 80 %)", mm(range));
+    let whose = match (answer.use_now(), &answer.verdict) {
+        (Some(now), _) if now.design == best.design => format!("expect {expected}"),
+        (None, Verdict::Print(_)) => format!("expect {expected}"),
+        (_, verdict) => {
+            let not = if matches!(verdict, Verdict::Print(_)) { "not " } else { "" };
+            let finger = finger(&best.design);
+            format!("largest expected range: {finger}, {expected}, {not}measured")
+        }
+    };
+    let not_usable = answer.not_usable().map_or(String::new(), |text| text + "; ");
+    format!("{not_usable}{whose}{}; {}", answer.unfinished(), answer.trust.reason())
 }
 
 /// Returns the reason why no design can be recommended, with the design of the least constraint violation.

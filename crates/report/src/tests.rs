@@ -3,6 +3,7 @@ use crate::answer::words;
 use finray::printed::PrintedFinger;
 use input::shipped::{FINGERS, ROBOTS, STIFFNESS};
 use input::units::N_PER_MM;
+use insertion::evaluation::robustness::firm::{FirmResult, FirmWindow};
 use insertion::evaluation::tolerance::evaluate;
 use insertion::outcome::STOP_REMEDY;
 use insertion::stiffness::parse;
@@ -227,6 +228,21 @@ fn stops_that_end_most_trials_are_the_headline() {
     let headline = crate::answer::Answer::of(&study).headline();
     let named = format!("the robot stops in {trials} of {trials} trials on usb; best finger: 20 %");
     assert!(headline.contains(&named), "{headline}");
+}
+
+#[test]
+fn a_finger_whose_repeats_fail_at_the_nominal_start_is_not_usable() {
+    let mut study = record(vec![walked(0, [20.0, 20.0])]);
+    let recorded = study.evaluations[0].clone();
+    for (window, usable) in [(Some(FirmWindow::default()), true), (None, false)] {
+        let firm = vec![FirmResult { window, trials: 12 }];
+        study.walked = vec![Walked { recorded: recorded.clone(), firm, by_ribs: None }];
+        let answer = crate::answer::Answer::of(&study);
+        let headline = answer.headline();
+        assert_eq!(headline.starts_with("Not usable as it is: with slightly varied "), !usable);
+        assert_eq!(answer.verdict_key() == "not_repeatable", !usable, "{headline}");
+        assert!(html(&study).contains(&format!("<h1>{headline}</h1>")));
+    }
 }
 
 #[test]

@@ -125,10 +125,11 @@ impl<'a> Answer<'a> {
 
     /// Returns the name of the verdict in JSON.
     pub fn verdict_key(&self) -> &'static str {
-        match (self.stopped(), self.simulated()) {
-            (Some(_), _) => "robot_stops",
-            (None, Some(_)) => "simulated",
-            (None, None) => self.verdict.key(),
+        match (self.stopped(), self.unsteady(), self.simulated()) {
+            (Some(_), ..) => "robot_stops",
+            (_, Some(_), _) => "not_repeatable",
+            (.., Some(_)) => "simulated",
+            (.., None) => self.verdict.key(),
         }
     }
 
@@ -139,13 +140,31 @@ impl<'a> Answer<'a> {
         tasks.into_iter().enumerate().find(|(_, found)| found.mostly_stopped())
     }
 
-    /// Returns the headline of a finger with which the robot stops in most insertions.
+    /// Returns the first task on which a repeat fails at the nominal start, if the recommended design was repeated;
+    /// `None` if there is none.
+    pub fn unsteady(&self) -> Option<&OnTask<'a>> {
+        let simulated = self.verdict.finger().is_some() && self.record.on_bench.is_none();
+        let found = self.recommended.as_ref().filter(|_| simulated)?;
+        found.tasks.iter().find(|task| task.firm.is_some_and(|firm| firm.window.is_none()))
+    }
+
+    /// Returns the headline of a finger with which the robot stops in most insertions, or with which repeats fail at the
+    /// nominal start.
     fn not_usable(&self) -> Option<String> {
-        let (place, found) = self.stopped()?;
         let config = &self.record.config;
-        let on = words::on(config, config.tasks().nth(place).unwrap_or_default());
-        let finger = words::design(self.verdict.finger()?);
-        Some(format!("{}; best finger: {finger}", words::not_usable(found, &on)))
+        let why = match self.stopped() {
+            Some((place, found)) => {
+                let on = words::on(config, config.tasks().nth(place).unwrap_or_default());
+                words::not_usable(found, &on)
+            }
+            None => {
+                let on = words::on(config, self.unsteady()?.name);
+                format!(
+                    "Not usable as it is: with slightly varied friction, start or time step the nominal start fails{on}"
+                )
+            }
+        };
+        Some(format!("{why}; best finger: {}", words::design(self.verdict.finger()?)))
     }
 
     /// Returns the headline of a finger that no measurement supports: of its task there are none, or a range is optimized,

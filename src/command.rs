@@ -63,15 +63,6 @@ impl From<String> for Output {
     }
 }
 
-/// Result of a command for other programs.
-#[derive(Debug)]
-pub struct CallResult {
-    /// Output of `--json`.
-    pub json: String,
-    /// SVG or HTML page that shows the result, if there is one.
-    pub picture: Option<String>,
-}
-
 /// A command of the program.
 #[derive(Clone, Copy)]
 pub struct Command {
@@ -82,7 +73,7 @@ pub struct Command {
     /// Runs the command and prints its result; fails if the request does, or with [`Output::failure`].
     pub print: fn(&ArgMatches, Program) -> Result<(), Failure>,
     /// Runs the command for another program.
-    pub call: fn(&ArgMatches, &Context<'_>) -> Result<CallResult, Failure>,
+    pub call: fn(&ArgMatches, &Context<'_>) -> Result<Output, Failure>,
 }
 
 const JSON: &str = "json";
@@ -141,7 +132,6 @@ fn print<R: Request>(matches: &ArgMatches, program: Program) -> Result<(), Failu
     failure.map_or(Ok(()), Err)
 }
 
-fn call<R: Request>(matches: &ArgMatches, context: &Context<'_>) -> Result<CallResult, Failure> {
-    let Output { value, picture, .. } = request::<R>(matches)?.run(context)?;
-    Ok(CallResult { json: value?.to_string(), picture })
+fn call<R: Request>(matches: &ArgMatches, context: &Context<'_>) -> Result<Output, Failure> {
+    request::<R>(matches)?.run(context)
 }

@@ -161,23 +161,18 @@ impl From<StudyError> for Failure {
     }
 }
 
-impl From<InputError> for Failure {
-    fn from(error: InputError) -> Self {
-        Failure::input(error)
-    }
+/// Implements the conversions of errors of bad input.
+macro_rules! bad_input {
+    ($($error:ty),*) => {$(
+        impl From<$error> for Failure {
+            fn from(error: $error) -> Self {
+                Failure::input(error)
+            }
+        }
+    )*};
 }
 
-impl From<DesignError> for Failure {
-    fn from(error: DesignError) -> Self {
-        Failure::input(error)
-    }
-}
-
-impl From<RigError> for Failure {
-    fn from(error: RigError) -> Self {
-        Failure::input(error)
-    }
-}
+bad_input!(InputError, DesignError, RigError);
 
 impl From<ReportError> for Failure {
     fn from(error: ReportError) -> Self {

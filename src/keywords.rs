@@ -1,7 +1,7 @@
 //! Commands called by another program, with their options as keywords.
 
-use crate::command::{CallResult, Command};
-use crate::{Context, Failure};
+use crate::command::Command;
+use crate::{Context, Failure, Output};
 use clap::{Arg, ArgAction, Args};
 use serde_json::{Map, Value};
 use std::ffi::OsString;
@@ -18,7 +18,7 @@ pub fn call(
     name: &str,
     keywords: &Map<String, Value>,
     context: &Context<'_>,
-) -> Result<CallResult, Failure> {
+) -> Result<Output, Failure> {
     let path: Vec<&str> = name.split(' ').collect();
     let command = commands.iter().find(|command| command.path == path);
     let command = command.ok_or_else(|| Failure::usage(format!("unknown command `{name}`")))?;

@@ -42,8 +42,7 @@ fn words(more: Value) -> Map<String, Value> {
 }
 
 fn call(name: &str, more: Value) -> Result<Value, Failure> {
-    let called = keywords::call(COMMANDS, name, &words(more), &silent())?;
-    Ok(serde_json::from_str(&called.json).unwrap())
+    keywords::call(COMMANDS, name, &words(more), &silent())?.value
 }
 
 /// The text of a failure by bad input.

@@ -1,10 +1,8 @@
 //! Commands, run without the interpreter's lock.
 
 use crate::errors::{InputError, StudyError, check_not_forked, exception, signalled};
-use finger_opt::Context;
-use finger_opt::command::CallResult;
 use finger_opt::commands::COMMANDS;
-use finger_opt::keywords;
+use finger_opt::{Context, Output, keywords};
 use pyo3::prelude::*;
 use serde_json::{Map, Value};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -73,6 +71,6 @@ pub fn call(py: Python<'_>, command: &str, keywords: &str) -> PyResult<(String, 
     let called = interruptible(py, |stop| {
         keywords::call(COMMANDS, command, &keywords, &Context::silent(stop))
     })?;
-    let CallResult { json, picture } = called.map_err(exception)?;
-    Ok((json, picture))
+    let Output { value, picture, .. } = called.map_err(exception)?;
+    Ok((value.map_err(exception)?.to_string(), picture))
 }

@@ -1,7 +1,7 @@
 //! `optimize trial`: simulates one insertion.
 
 use crate::setup::driven::undriven;
-use crate::setup::film::FilmRequest;
+use crate::setup::film::{recordable, start_label};
 use crate::setup::finger::usage;
 use crate::setup::repeat::{RepeatRequest, impossible_text};
 use crate::setup::task::outcome_json;
@@ -14,14 +14,16 @@ use calibration::identify::log::of_samples;
 use input::units::MM;
 use insertion::outcome::stop_words;
 use insertion::trial::{Sample, picture};
-use insertion::{Grasp, Outcome, Trial, grid_mm};
+use insertion::{Grasp, Outcome, Recording, Rig, Scenario, Trial, grid_mm};
 use report::answer::lines;
 use report::answer::words::number;
+use report::replay::{self, Film};
 use report::text_table;
 use serde::{Serialize, Serializer};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
+use std::sync::atomic::AtomicBool;
 use study::write_file;
 
 /// Largest accepted offset, mm.
@@ -56,9 +58,15 @@ pub struct Request {
     /// Simulated time between two samples of the time series in the JSON, s
     #[arg(long, value_name = "S", hide = true, value_parser = |text: &str| parse_at_least_0(text, "s"))]
     pub every_s: Option<f64>,
-    /// Recordings.
-    #[command(flatten)]
-    pub film: FilmRequest,
+    /// Record the trial: a page that plays it
+    #[arg(long, value_name = "FILE.html", value_parser = recordable)]
+    pub record: Option<PathBuf>,
+    /// Draw force against depth
+    #[arg(long, value_name = "FILE.svg")]
+    pub plot: Option<PathBuf>,
+    /// Include the page that plays the trial in the result
+    #[arg(long = "film", hide = true)]
+    pub page: bool,
     /// Write force and pose at 500 Hz, as a robot logs them, from the start of the search
     #[arg(long, value_name = "FILE.csv")]
     pub log: Option<PathBuf>,
@@ -101,7 +109,8 @@ pub struct Done {
 impl command::Request for Request {
     fn run(&self, context: &Context<'_>) -> Result<Output, Failure> {
         let done = self.done(context)?;
-        let written = layout::wrote(self.svg.iter().chain(&self.log).chain(self.film.files()));
+        let files = [&self.svg, &self.log, &self.record, &self.plot];
+        let written = layout::wrote(files.into_iter().flatten());
         Ok(Output::new(layout::wrapped(&done.text()) + &written, done))
     }
 }
@@ -119,7 +128,7 @@ impl Request {
         let offset = offset_mm * MM;
         let taught = setup.evaluator.taught(scenario, stop)?;
         let rig = setup.evaluator.rig(scenario, taught, 1.0)?;
-        let (filmed, page) = self.film.record(&*rig, scenario, offset_mm, stop)?;
+        let (filmed, page) = self.recorded(&*rig, scenario, stop)?;
         let grasp = Grasp { stop, ..Grasp::of(&scenario.finger) };
         let (trial, samples) = match (self.every_s, filmed) {
             _ if self.probe => {
@@ -156,6 +165,36 @@ impl Request {
         let series = self.every_s.map(|_| series(&samples));
         let taught_start_mm = taught.map(grid_mm);
         Ok(Done { chosen, offset_mm, trial, taught_start_mm, repeats, impossible, series, page })
+    }
+
+    /// Records the trial and writes the requested outputs; returns the recording (`None` if no output was requested),
+    /// and the page if it was requested.
+    fn recorded(
+        &self,
+        rig: &dyn Rig,
+        scenario: &Scenario,
+        stop: &AtomicBool,
+    ) -> Result<(Option<Recording>, Option<String>), Failure> {
+        if self.record.is_none() && self.plot.is_none() && !self.page {
+            return Ok((None, None));
+        }
+        let grasp = Grasp { stop, ..Grasp::of(&scenario.finger) };
+        let recording = rig.record(grasp, self.offset_mm * MM).ok_or_else(|| {
+            Failure::usage("--record and --plot need an engine that simulates: --engine direct")
+        })?;
+        not_stopped(stop)?;
+        let label = &start_label(self.offset_mm);
+        let (task, pad) = (&scenario.task, &scenario.finger.pad);
+        let film = Film { label, task, pad, recording: &recording };
+        let page = || replay::page(&format!("{}, {label}", scenario.task.name), &[film]);
+        if let Some(file) = &self.record {
+            write_file(file, &page())?;
+        }
+        if let Some(file) = &self.plot {
+            write_file(file, &replay::curve_svg(&film)?)?;
+        }
+        let page = self.page.then(page);
+        Ok((Some(recording), page))
     }
 }
 

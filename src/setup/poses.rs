@@ -161,14 +161,11 @@ pub fn depth(request: &PairRequest, mate: &Mate, long: f64) -> Result<f64, Failu
 
 /// Returns the direction of insertion of a mate, in the file of the socket.
 pub(super) fn insert_along(mate: &Mate) -> InsertionAxis {
-    along_of(&-mate.out.into_inner())
+    let way = -mate.out.into_inner();
+    let axis = way.iamax();
+    InsertionAxis::value_variants()[2 * axis + usize::from(way[axis] < 0.0)]
 }
 
 pub(super) fn jaws_of(way: &Vector3<f64>) -> JawAxis {
     [JawAxis::X, JawAxis::Y, JawAxis::Z][way.iamax()]
-}
-
-fn along_of(way: &Vector3<f64>) -> InsertionAxis {
-    let axis = way.iamax();
-    InsertionAxis::value_variants()[2 * axis + usize::from(way[axis] < 0.0)]
 }

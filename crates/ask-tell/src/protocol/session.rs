@@ -1,6 +1,6 @@
 //! Ask-and-tell session with one optimizer.
 
-use super::message::{Best, Direction, Line, PointResult, Problem, check_count};
+use super::message::{Best, Line, PointResult, Problem, check_count};
 use super::parameter::Parameter;
 use crate::{Grid, GridPoint, Observation, Optimizer, build};
 use serde_json::{Map, Value, json};
@@ -13,9 +13,7 @@ pub struct Session {
 }
 
 struct Search {
-    parameters: Vec<Parameter>,
-    direction: Direction,
-    batch: Option<usize>,
+    problem: Problem,
     optimizer: Box<dyn Optimizer + Send>,
     /// All proposed points by id.
     proposals: Vec<Proposal>,
@@ -64,10 +62,8 @@ impl Search {
         let kind = problem.check()?;
         let grid = Grid::new(problem.parameters.iter().map(Parameter::levels).collect());
         Ok(Search {
-            parameters: problem.parameters,
-            direction: problem.direction,
-            batch: problem.batch,
             optimizer: build(kind, grid, problem.seed),
+            problem,
             proposals: Vec::new(),
             first: 0,
             asked: 0,
@@ -78,10 +74,10 @@ impl Search {
     }
 
     fn ask(&mut self, n: usize) -> Result<Vec<Value>, String> {
-        check_count("ask", n, self.parameters.len())?;
+        check_count("ask", n, self.problem.parameters.len())?;
         if n > 0 && self.asked == self.proposals.len() {
             self.check_complete()?;
-            let points = self.optimizer.ask(self.batch.unwrap_or(n)).into_iter();
+            let points = self.optimizer.ask(self.problem.batch.unwrap_or(n)).into_iter();
             self.proposals.extend(points.map(|point| Proposal { point, merit: None }));
         }
         let end = self.proposals.len().min(self.asked + n);
@@ -118,7 +114,7 @@ impl Search {
         }
         for (id, point, value) in checked {
             self.update_best(id, &point, value);
-            let merit = value.map(|value| self.direction.merit(value));
+            let merit = value.map(|value| self.problem.direction.merit(value));
             match id {
                 Some(id) => self.proposals[id].merit = Some(merit),
                 None => {
@@ -174,7 +170,8 @@ impl Search {
     }
 
     fn grid_point(&self, values: &BTreeMap<String, f64>) -> Result<GridPoint, String> {
-        let names: Vec<&str> = self.parameters.iter().map(|one| one.name.as_str()).collect();
+        let names: Vec<&str> =
+            self.problem.parameters.iter().map(|one| one.name.as_str()).collect();
         let fail = |problem: String| Err(format!("{problem}; accepted: {}", names.join(", ")));
         if let Some(name) = values.keys().find(|name| !names.contains(&name.as_str())) {
             return fail(format!("unknown parameter `{name}`"));
@@ -183,13 +180,13 @@ impl Search {
             return fail(format!("parameter `{name}` is missing"));
         }
         let level = |parameter: &Parameter| parameter.level(values[&parameter.name]);
-        Ok(GridPoint(self.parameters.iter().map(level).collect::<Result<_, _>>()?))
+        Ok(GridPoint(self.problem.parameters.iter().map(level).collect::<Result<_, _>>()?))
     }
 
     /// Updates the best result; of equal results, the lower id or the earlier one is kept.
     fn update_best(&mut self, id: Option<usize>, point: &GridPoint, value: Option<f64>) {
         let Some(value) = value else { return };
-        let merit = |value| self.direction.merit(value);
+        let merit = |value| self.problem.direction.merit(value);
         let worse = |best: &Best| {
             let earlier = id.zip(best.id).is_some_and(|(id, best)| id < best);
             merit(value) < merit(best.value) || value == best.value && !earlier
@@ -203,6 +200,6 @@ impl Search {
         let value = |(parameter, &level): (&Parameter, &u32)| {
             (parameter.name.clone(), json!(parameter.value(level)))
         };
-        self.parameters.iter().zip(&point.0).map(value).collect()
+        self.problem.parameters.iter().zip(&point.0).map(value).collect()
     }
 }

@@ -2,7 +2,7 @@
 
 use super::files::DEFAULT_FINGER;
 use super::files::{find, stiffness_data, surrogate};
-use super::finger::{InfillRequest, in_degrees};
+use super::finger::InfillRequest;
 use crate::failure::Failure;
 use finray::geometry::Geometry;
 use finray::printed::PrintedFinger;
@@ -61,7 +61,6 @@ impl PrintRequest {
             }
             None => {
                 let [density, direction] = self.infill.required()?;
-                in_degrees(direction, [0.0, 90.0], 0.1)?;
                 (Design::infill(density, direction), None, None)
             }
         };

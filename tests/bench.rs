@@ -26,7 +26,7 @@ fn measurements_are_added_checked_and_refused() {
     let two = ["error: --set task.strategy.tilt_deg: `y` is not a number\n--range-mm: `x` is not"];
     add("5 --set task.strategy.tilt_deg=y --range-mm x").fails(2, &two);
     assert_eq!(folder.read("bench.csv"), before);
-    let checked = optimize_line(&format!("measure check {file} --json")).json();
+    let checked = optimize_line(&format!("measure check --measurements {file} --json")).json();
     assert_eq!((&checked["lines"], &checked["tasks"][0]["bounds"]), (&2.into(), &1.into()));
     folder.file("bench.csv", before.replace("ket8", "ket80"));
     optimize_line(&format!("measure check {file}"))

@@ -1,7 +1,7 @@
 //! `optimize task`: drafted, imported and checked tasks of your own connector.
 
 use crate::common::shipped::{finger, rig};
-use crate::common::{Ran, Studies, optimize, optimize_line};
+use crate::common::{Ran, Studies, fake, optimize, optimize_line};
 use connector::check::{Problem, problems};
 use connector::draft::{Dimensions, Size, draft};
 use connector::mesh::{Body, Surface, pick, read};
@@ -442,6 +442,12 @@ fn a_grip_that_carries_neither_weight_nor_drag_is_warned_of() {
         warned.ends_with("less than 19.62 N, the weight of the plug; give at least 9.9 N"),
         "{warned}"
     );
+    let folder = Studies::new();
+    let heavy = folder.file("heavy.toml", USB.replace("mass_g = 5.0", "mass_g = 2000.0"));
+    for line in ["task tune --dry-run --budget 60", "evaluate --density 20 --direction 10 --task"] {
+        let ran = fake(&format!("{line} {heavy}"));
+        assert!(ran.stderr.contains(&format!("warning: {warned}")), "{line}: {}", ran.stderr);
+    }
 }
 
 /// Triangles of an example mesh, mm.

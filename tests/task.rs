@@ -443,10 +443,13 @@ fn a_grip_that_carries_neither_weight_nor_drag_is_warned_of() {
         "{warned}"
     );
     let folder = Studies::new();
-    let heavy = folder.file("heavy.toml", USB.replace("mass_g = 5.0", "mass_g = 2000.0"));
-    for line in ["task tune --dry-run --budget 60", "evaluate --density 20 --direction 10 --task"] {
-        let ran = fake(&format!("{line} {heavy}"));
-        assert!(ran.stderr.contains(&format!("warning: {warned}")), "{line}: {}", ran.stderr);
+    let weak = folder.file("weak.toml", USB.replace("force_n = 5.0", "force_n = 0.02"));
+    let tuned = fake(&format!("task tune {weak} --dry-run --budget 60 --max-force-n 200"));
+    let limit = "--max-force-n 200, but the robot servo stops at 150 N\n";
+    assert!(tuned.stderr.contains(limit), "{}", tuned.stderr);
+    for ran in [tuned, fake(&format!("evaluate --density 20 --direction 10 --task {weak}"))] {
+        let words = "warning: grip.force_n: with 0.02 N the friction of the two pads is 0.04 N";
+        assert!(ran.stderr.contains(words), "{}", ran.stderr);
     }
 }
 

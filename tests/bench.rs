@@ -26,7 +26,7 @@ fn measurements_are_added_checked_and_refused() {
     let two = ["error: --set task.strategy.tilt_deg: `y` is not a number\n--range-mm: `x` is not"];
     add("5 --set task.strategy.tilt_deg=y --range-mm x").fails(2, &two);
     assert_eq!(folder.read("bench.csv"), before);
-    let checked = optimize_line(&format!("measure check {file} --json")).json();
+    let checked = optimize_line(&format!("measure check --measurements {file} --json")).json();
     assert_eq!((&checked["lines"], &checked["tasks"][0]["bounds"]), (&2.into(), &1.into()));
     folder.file("bench.csv", before.replace("ket8", "ket80"));
     optimize_line(&format!("measure check {file}"))
@@ -83,7 +83,9 @@ fn calibration_and_the_next_print_answer_in_the_agreed_form() {
     assert_eq!(predictions.len(), 21 * 41);
     let best: f64 = predictions.iter().filter_map(|p| p["probability_best"].as_f64()).sum();
     assert!((best - 1.0).abs() < 1e-9, "{best}");
-    assert!(found["parameters"][0]["moved"].is_boolean());
+    let first = &found["parameters"][0];
+    assert!(first["moved"].is_boolean());
+    assert_eq!([&first["sets"], &first["as"]], ["task.friction.plug_socket", "factor"]);
     assert!(task["loo_mean_of_others_percent"].as_f64().is_some_and(|of| (of - 18.7).abs() < 0.05));
     let reliable = task["reliable"].as_bool().expect("whether");
     let verdict = task["verdict"].as_str().expect("a sentence");
@@ -92,6 +94,10 @@ fn calibration_and_the_next_print_answer_in_the_agreed_form() {
     let two = folder.file("two.csv", format!("{HEAD}ket8,10,6,8\nket8,11,40,2\n"));
     let shown = optimize_line(&format!("calibrate {few} {two}").replace("--json ", ""));
     assert!(shown.stdout.starts_with("ket8: do not rely on these predictions yet"));
+    for (name, unit) in [("preload", "  × "), ("clearance", " mm  ")] {
+        let line = shown.stdout.lines().find(|line| line.starts_with(name));
+        assert!(line.is_some_and(|line| line.contains(unit)), "{}", shown.stdout);
+    }
     shown.says_in_any_lines("measure 3 more, or identify the cell from logs");
     shown.says_in_any_lines("by the mean of the others 188 %");
     let begins = "ket8: simulations with drawn parameters of the cell: 0/24\n";

@@ -150,7 +150,13 @@ fn every_format_of_a_studys_best_finger_is_written() {
         ("prusaslicer-3mf", "prusa.3mf", "Slic3r_PE_model.config"),
         ("orcaslicer-3mf", "orca.3mf", "model_settings.config"),
     ] {
-        export(format, file).succeeds();
+        let ran = export(format, file);
+        ran.succeeds();
+        // The headline of the study is another finger.
+        for words in ["recommended by simulation", "--density 30 --direction 20 instead of "] {
+            assert!(ran.stderr.contains(words), "{}", ran.stderr);
+        }
+        assert!(!ran.stderr.contains("unfinished"), "{}", ran.stderr);
         let written = std::fs::read(folder.join(file)).unwrap();
         if !format.ends_with("-3mf") {
             let out = folder.join(file);
@@ -165,6 +171,11 @@ fn every_format_of_a_studys_best_finger_is_written() {
             assert!(text.contains("N/mm, measured model") && text.contains("N/mm, from the ribs"));
         }
     }
+    let longer = studies.read("usb/study.toml").replace("budget = 4", "budget = 5");
+    studies.file("usb/study.toml", longer);
+    let ran = export("dxf", "f.dxf");
+    ran.succeeds();
+    assert!(ran.stderr.contains("unfinished: optimize resume "), "{}", ran.stderr);
     export("sheet", "sheet.pdf").fails(2, &["sheet.pdf", "must end in .html or .htm"]);
     export("stl", "f.3MF").fails(2, &["--format stl", "f.3MF", "must end in .stl"]);
     export("prusaslicer-3mf", "f.gcode").fails(2, &["f.gcode", "must end in .3mf"]);

@@ -223,8 +223,6 @@ fn input_files_that_mean_nothing_are_refused_before_anything_is_simulated() {
             format!("export finger --density {density} --direction 10 --format stl --out f.stl");
         optimize_line(&finger).fails(2, &["--density: is", "must lie in 1 .. 100 %"]);
     }
-    let radians = "export finger --density 20 --direction 0.35 --out f.stl";
-    optimize_line(radians).fails(2, &["--direction: 0.35 degrees", "0.35 rad is 20.1 degrees"]);
     optimize_line("task new loose --plug 8x2.4x25 --clearance 3").fails(2, &["--clearance: is 3"]);
     let typical = include_str!("../uncertainties/typical.toml");
     let wide = "half_width_mm = 1000";

@@ -1,7 +1,7 @@
 //! `optimize task`: drafted, imported and checked tasks of your own connector.
 
 use crate::common::shipped::{finger, rig};
-use crate::common::{Ran, Studies, optimize, optimize_line};
+use crate::common::{Ran, Studies, fake, optimize, optimize_line};
 use connector::check::{Problem, problems};
 use connector::draft::{Dimensions, Size, draft};
 use connector::mesh::{Body, Surface, pick, read};
@@ -442,6 +442,15 @@ fn a_grip_that_carries_neither_weight_nor_drag_is_warned_of() {
         warned.ends_with("less than 19.62 N, the weight of the plug; give at least 9.9 N"),
         "{warned}"
     );
+    let folder = Studies::new();
+    let weak = folder.file("weak.toml", USB.replace("force_n = 5.0", "force_n = 0.02"));
+    let tuned = fake(&format!("task tune {weak} --dry-run --budget 60 --max-force-n 200"));
+    let limit = "--max-force-n 200, but the robot servo stops at 150 N\n";
+    assert!(tuned.stderr.contains(limit), "{}", tuned.stderr);
+    for ran in [tuned, fake(&format!("evaluate --density 20 --direction 10 --task {weak}"))] {
+        let words = "warning: grip.force_n: with 0.02 N the friction of the two pads is 0.04 N";
+        assert!(ran.stderr.contains(words), "{}", ran.stderr);
+    }
 }
 
 /// Triangles of an example mesh, mm.

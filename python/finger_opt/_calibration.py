@@ -137,7 +137,7 @@ class Prediction(Result):
     low_mm: float
     high_mm: float
     probability_best: float
-    #: Simulated range, mm, without the correction from measurements.
+    #: Range of the calibrated simulation, mm, without the correction from measurements.
     simulated_mm: float | None
     failure_negative: int | None
     failure_positive: int | None
@@ -172,6 +172,9 @@ class Parameter(Result):
 
     name: str
     task: str | None
+    #: Key that the value changes, and how: replaced, multiplied by it, or shifted by it.
+    sets: str
+    as_: str
     prior_low: float
     prior_median: float
     prior_high: float

@@ -143,6 +143,7 @@ class Nearest(Result):
     """Trial that came closest to an insertion, if none inserted."""
 
     outcome: str
+    robot_stopped: bool
     phase: str
     depth_mm: float
     tilt_deg: float

@@ -3,6 +3,7 @@
 use crate::setup::finger::usage;
 use crate::setup::measured;
 use crate::setup::repeat::{RepeatRequest, bands_text, serialize_bands};
+use crate::setup::task::warn_of_weak_grip;
 use crate::{
     ChosenFinger, Context, Failure, FingerRequest, Output, Setup, SetupRequest, command, layout,
     not_stopped,
@@ -96,9 +97,11 @@ impl Request {
     /// If an input cannot be used, or the run is cancelled.
     pub fn evaluated(&self, context: &Context<'_>) -> Result<Evaluated, Failure> {
         let stop = context.stop;
-        let busy = context.busy("simulating the finger");
         let (setup, plan) = self.prepared()?;
         let chosen = self.finger.choose(&setup)?;
+        let Scenario { task, robot, .. } = &chosen.scenario;
+        warn_of_weak_grip(task, robot, setup.evaluator.engine, context)?;
+        let busy = context.busy("simulating the finger");
         let measured = self.measured(&chosen)?;
         let clock = Instant::now();
         let evaluation = setup.evaluator.simulate(&chosen.scenario, self.search(), &plan, stop)?;

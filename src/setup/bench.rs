@@ -3,7 +3,10 @@
 use super::files::find;
 use super::request::SetupRequest;
 use super::run::{CacheRequest, EffortRequest, settings};
-use super::{Setup, measured};
+use super::{
+    Setup,
+    measured::{self, BENCH_FILE},
+};
 use crate::progress::cost;
 use crate::{Context, Failure};
 use calibration::bench::Settings;
@@ -31,7 +34,7 @@ pub struct BenchRequest {
     #[command(flatten)]
     pub setup: SetupRequest,
     /// Bench measurements: published, or the path of a file
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", default_value = BENCH_FILE)]
     pub measurements: String,
 }
 

@@ -62,13 +62,6 @@ impl InfillRequest {
     }
 }
 
-/// Checks that a direction of a range, degrees, is not in radians, as [`wrong_unit::angle`] does.
-pub(crate) fn in_degrees(direction: f64, range: [f64; 2], step: f64) -> Result<(), Failure> {
-    wrong_unit::angle(direction, range, step).map_or(Ok(()), |radians| {
-        Err(Failure::usage(format!("--direction: {}", radians.join(" "))))
-    })
-}
-
 /// Finger, by its infill or by its stiffness.
 #[derive(Debug, Clone, Default, clap::Args)]
 pub struct FingerRequest {
@@ -110,13 +103,9 @@ pub struct ChosenFinger {
 }
 
 impl FingerRequest {
-    /// Returns the finger on the task of a setup, and checks that its numbers are in the units of their keys.
+    /// Returns the finger on the task of a setup, and checks that its settings are in the units of their keys.
     pub(crate) fn choose(&self, setup: &Setup) -> Result<ChosenFinger, Failure> {
         let chosen = self.choose_with(setup, &setup.evaluator)?;
-        let of_space = setup.space.parameters.iter().find(|one| one.key == DIRECTION_KEY);
-        if let Some((value, one)) = self.infill.direction.zip(of_space) {
-            in_degrees(value, [one.low, one.high], one.step)?;
-        }
         if !chosen.set.0.is_empty() {
             check_units(&setup.only_task()?.task, &chosen.scenario.task)?;
         }

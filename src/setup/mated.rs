@@ -78,7 +78,7 @@ pub fn mated(
 ) -> Result<MatedTask, Failure> {
     let triangles = parts.triangles.each_ref().map(Vec::as_slice);
     let (unit, why) = unit(files, triangles, parts.unit)?;
-    check_sizes(files, triangles, unit, why.is_some(), context)?;
+    check_sizes(files, triangles, unit != Unit::Mm && why.is_some(), context)?;
     let mut findings: Vec<(&str, String)> = why.map(|why| ("unit", why)).into_iter().collect();
     let drawn: [Vec<Triangle>; 2] =
         triangles.map(|of| of.iter().map(|t| t.map(|p| p * unit.metres())).collect());
@@ -344,30 +344,30 @@ pub fn unit(
 fn check_sizes(
     files: Files,
     triangles: [&[Triangle]; 2],
-    unit: Unit,
     guessed: bool,
     context: &Context<'_>,
 ) -> Result<(), Failure> {
-    let side = |of: &[Triangle], axis| width(extent(of.iter().flatten(), axis));
-    let sides = triangles.map(|of| [0, 1, 2].map(|axis| side(of, axis) * unit.metres() / MM));
-    let [plug, socket] = sides.map(|mut sides| {
+    let sides = triangles.map(|of| {
+        let mut sides = [0, 1, 2].map(|axis| width(extent(of.iter().flatten(), axis)));
         sides.sort_by(f64::total_cmp);
         sides
     });
-    let larger = |a: [f64; 3], b: [f64; 3]| a.iter().zip(b).all(|(a, b)| *a > MAX_RATIO * b);
-    if files[0] == files[1] || !(larger(plug, socket) || larger(socket, plug)) {
-        return Ok(());
-    }
-    let [plug, socket] = sides.map(|[x, y, z]| format!("{x:.1} x {y:.1} x {z:.1} mm"));
-    let sizes = format!("the plug is {plug}, the socket {socket}");
-    if unit != Unit::Mm && guessed {
-        let problem = format!(
-            "read in {}, {sizes}; export both in one unit, or name theirs with --unit",
-            value(unit)
-        );
+    let ratios = |[large, small]: [usize; 2]| {
+        let mut ratios = [0, 1, 2].map(|i| sides[large][i] / sides[small][i]);
+        ratios.sort_by(f64::total_cmp);
+        ratios.iter().all(|ratio| *ratio > MAX_RATIO).then_some((large, small, ratios))
+    };
+    let larger = [[0, 1], [1, 0]].into_iter().filter(|_| files[0] != files[1]).find_map(ratios);
+    let Some((large, small, [least, _, most])) = larger else { return Ok(()) };
+    let (large, small) = (BODIES[large], BODIES[small]);
+    let found =
+        format!("every side of the {large} is {least:.0} to {most:.0} times that of the {small}");
+    if guessed {
+        let problem =
+            format!("{found}; export both in one unit, or name it with --unit if they are");
         return Err(Failure::in_file(names(files), problem));
     }
-    context.note(&format!("{sizes}: are both in one unit?"));
+    context.note(&format!("{found}: are both in one unit?"));
     Ok(())
 }
 

@@ -16,6 +16,24 @@ use study::{BENCH_ROLES, StudyRecord};
 /// Measurement file that `measure add` writes and `measure check` reads by default.
 pub const BENCH_FILE: &str = "bench.csv";
 
+/// Measurement file of a command that is about it, which therefore also takes it without an option.
+#[derive(Debug, Clone, clap::Args)]
+pub struct BenchFileRequest {
+    /// The file
+    #[arg(value_name = "FILE", default_value = BENCH_FILE)]
+    file: String,
+    /// The file, by the option of other commands
+    #[arg(long, hide = true, value_name = "FILE", conflicts_with = "file")]
+    measurements: Option<String>,
+}
+
+impl BenchFileRequest {
+    /// Returns the name of the file.
+    pub fn name(&self) -> &str {
+        self.measurements.as_ref().unwrap_or(&self.file)
+    }
+}
+
 /// Bench measurements, and priors of the parameters that were not measured.
 pub struct Measured {
     /// Name of the measurement file.

@@ -2,14 +2,15 @@
 
 use super::files::DEFAULT_FINGER;
 use super::files::{find, stiffness_data, surrogate};
-use super::finger::{InfillRequest, in_degrees};
+use super::finger::InfillRequest;
 use crate::failure::Failure;
 use finray::geometry::Geometry;
 use finray::printed::PrintedFinger;
+use input::files::shell_word;
 use input::shipped::FINGERS;
 use insertion::finger::file::{infill, is_shape};
 use insertion::{DENSITY_KEY, DIRECTION_KEY, Design, FingerFile, Prediction};
-use report::answer::Answer;
+use report::answer::{Answer, words};
 use std::path::{Path, PathBuf};
 use study::StudyRecord;
 
@@ -50,6 +51,31 @@ impl PrintRequest {
         of_study.map_or_else(|| predicted_stiffness(&file.finger, &design), |found| Ok(Some(found)))
     }
 
+    /// Returns notes on the finger of a study: which one it is, which one the headline of the study names instead, and
+    /// whether the study is unfinished.
+    ///
+    /// # Errors
+    /// If the study cannot be read.
+    pub fn notes(&self) -> Result<Vec<String>, Failure> {
+        let Some(dir) = &self.dir else { return Ok(Vec::new()) };
+        let record = StudyRecord::load(dir)?;
+        let answer = Answer::of(&record);
+        let Some(finger) = answer.verdict.finger() else { return Ok(Vec::new()) };
+        let by =
+            if record.on_bench.is_some() { "simulation and measurements" } else { "simulation" };
+        let dir = shell_word(dir.display());
+        let mut notes = vec![format!("exports {}, recommended by {by}", words::design(finger))];
+        let other = answer.use_now().filter(|best| best.design != *finger);
+        notes.extend(other.and_then(|best| {
+            let [density, direction] = [DENSITY_KEY, DIRECTION_KEY].map(|key| best.design.get(key));
+            let options = format!("--density {} --direction {}", density?, direction?);
+            Some(format!("{}; export it with {options} instead of {dir}", words::use_now(&best)))
+        }));
+        let unfinished = || format!("the study is unfinished: optimize resume {dir}");
+        notes.extend(record.unfinished().then(unfinished));
+        Ok(notes)
+    }
+
     /// Returns the design, its finger file, and the stiffness that a study predicted.
     fn chosen(&self) -> Result<(Design, FingerFile, Option<Prediction>), Failure> {
         let InfillRequest { density, direction } = self.infill;
@@ -61,7 +87,6 @@ impl PrintRequest {
             }
             None => {
                 let [density, direction] = self.infill.required()?;
-                in_degrees(direction, [0.0, 90.0], 0.1)?;
                 (Design::infill(density, direction), None, None)
             }
         };

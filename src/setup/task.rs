@@ -4,7 +4,7 @@ use super::files::{find, robot};
 use super::request::{RobotRequest, TaskSource};
 use super::tune::{self, tune_until_success};
 use crate::layout::lines;
-use crate::{Failure, not_stopped};
+use crate::{Context, Failure, not_stopped};
 use connector::check::{Problem, problems};
 use connector::nominal;
 use connector::tune::{Stage, Tuned};
@@ -156,6 +156,19 @@ pub(crate) fn nominal_warnings(task: &Task, trial: &Trial, robot: &Robot) -> Vec
         )
     });
     nominal::weak_grip(task, trial).into_iter().chain(stops).collect()
+}
+
+/// Shows a warning of a weak grip in the trial of [`nominal_start`].
+pub(crate) fn warn_of_weak_grip(
+    task: &Task,
+    robot: &Robot,
+    engine: EngineKind,
+    context: &Context<'_>,
+) -> Result<(), Failure> {
+    let (_, trial) = nominal_start(task, robot, engine, context.stop)?;
+    let text = nominal::weak_grip(task, &trial);
+    text.iter().for_each(|text| context.note(&format!("warning: {text}")));
+    Ok(())
 }
 
 /// Returns the measured finger of medium stiffness, with the finger model of the task, and the recording of its trial

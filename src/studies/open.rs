@@ -88,7 +88,7 @@ impl OpenStudy {
                 let ends = outcome(trial.outcome) + stop_words(trial.robot_stopped);
                 let (command, why) = repair(&record, self.study.dir(), place);
                 warn(&format!(
-                    "{name}: with the medium finger the nominal start ends with {ends}; {command} {why}"
+                    "{name}: with the medium finger the nominal start ends with {ends}; try `{command}` to {why}"
                 ));
             }
         }

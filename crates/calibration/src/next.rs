@@ -325,20 +325,19 @@ fn reason(
         return "the largest simulated range".to_owned();
     }
     let side = side(own, tried);
-    let Some(best_mm) = best_mm else {
-        let place = side.as_deref().unwrap_or("near the first");
-        return format!("large expected range, and {place}");
-    };
-    let gain = expected_mm - best_mm;
+    let gain = best_mm.map_or(0.0, |best_mm| expected_mm - best_mm);
     let wider = format!("expected {gain:.1} mm wider than the best measured");
-    match side {
-        Some(side) if gain > 0.0 => format!("{wider}, and {side}"),
-        None if gain > 0.0 => wider,
-        Some(side) => format!("{side}; may reach {high_mm:.1} mm"),
-        None if high_mm > best_mm => {
+    match (side, best_mm) {
+        (Some(side), _) if gain > 0.0 => format!("{wider}, and {side}"),
+        (None, _) if gain > 0.0 => wider,
+        (Some(side), _) => format!("{side}; may reach {high_mm:.1} mm"),
+        (None, None) => format!("close to an earlier one, but may reach {high_mm:.1} mm"),
+        (None, Some(best_mm)) if high_mm > best_mm => {
             format!("may reach {high_mm:.1} mm, more than the best measured")
         }
-        None => "close to those measured, and hardly wider than the best of them".to_owned(),
+        (None, Some(_)) => {
+            "close to those measured, and hardly wider than the best of them".to_owned()
+        }
     }
 }
 
@@ -430,8 +429,10 @@ mod tests {
             assert!(side(finger).contains(words), "{finger}: {}", side(finger));
         }
         assert_eq!(side(5), "");
-        let reason = |high_mm| reason(all[5], &all[..2], 7.0, high_mm, Some(7.9));
-        assert!(reason(7.5).contains("hardly wider"));
-        assert!(reason(8.5).contains("may reach 8.5 mm"));
+        let after = |high_mm, best_mm| reason(all[5], &all[..2], 7.0, high_mm, best_mm);
+        assert!(after(7.5, Some(7.9)).contains("hardly wider"));
+        assert!(after(8.5, Some(7.9)).contains("may reach 8.5 mm, more than the best"));
+        // Without a measured range, for example after a finger that was not measurable.
+        assert_eq!(after(8.5, None), "close to an earlier one, but may reach 8.5 mm");
     }
 }

@@ -5,6 +5,7 @@ use super::subject::Subject;
 use crate::experiments::Experiment;
 use ask_tell::statistics::{Moments, normal_cdf, pearson, quantile, sorted};
 use insertion::{DENSITY_KEY, DIRECTION_KEY, Design, Evaluation};
+use parameters::{Path, Transform};
 use serde::Serialize;
 use serde_json::{Value, json};
 use study::{BenchEffort, BenchFinger, BenchPrediction, Provenance};
@@ -16,11 +17,17 @@ const MOVED: (f64, f64) = (0.75, 0.5);
 const CONFOUNDED: f64 = 0.5;
 
 /// Effect of the measurements on a parameter: the 10th, 50th and 90th percentile of prior and posterior, in the unit of
-/// the parameter.
+/// the parameter: that of the path, or none for a factor.
 #[derive(Debug, Clone, Serialize)]
 pub struct ParameterUpdate {
     pub name: String,
     pub task: Option<String>,
+    /// Path of the number that it sets.
+    #[serde(rename = "sets")]
+    pub path: Path,
+    /// Operation on the number.
+    #[serde(rename = "as")]
+    pub transform: Transform,
     pub prior_low: f64,
     pub prior_median: f64,
     pub prior_high: f64,
@@ -41,6 +48,8 @@ pub fn updates(calibration: &Calibration) -> Vec<ParameterUpdate> {
         ParameterUpdate {
             name: parameter.name.clone(),
             task: task.clone(),
+            path: parameter.path.clone(),
+            transform: parameter.transform,
             prior_low: before(0.1),
             prior_median: before(0.5),
             prior_high: before(0.9),

@@ -125,6 +125,14 @@ impl Parameter {
         }
     }
 
+    /// Returns values of the parameter, given as text, with the sign of a factor or with their unit.
+    pub fn with_unit(&self, values: &str) -> String {
+        match self.transform {
+            Transform::Factor => format!("× {values}"),
+            Transform::Shift | Transform::Value => format!("{values}{}", self.path.unit()),
+        }
+    }
+
     /// Checks a parameter read from a file.
     ///
     /// # Errors

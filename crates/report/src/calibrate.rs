@@ -2,7 +2,7 @@
 
 use super::text_table;
 use crate::answer::words::{design, others};
-use calibration::calibrate::{Calibration, TaskResult};
+use calibration::calibrate::{Calibration, Coordinate, TaskResult};
 use calibration::predict::INTERVAL;
 use calibration::subject::Subject;
 use calibration::table::{ParameterUpdate, by_range, confounded, updates, warning};
@@ -38,7 +38,7 @@ pub fn text(subject: &Subject, result: &TaskResult) -> String {
             format!("{:.1}", one.simulated_mm),
         ]
     });
-    let head = ["best on the bench", "range mm", "80 % interval", "is the best", "simulated"];
+    let head = ["best on the bench", "range mm", "80 % interval", "is the best", "uncorrected"];
     text += &text_table(1, head, rows);
     let others = others(best().map(|one| one.probability_best), result.predictions.len());
     text.extend(others.map(|words| format!("is the best: {words}\n")));
@@ -48,17 +48,18 @@ pub fn text(subject: &Subject, result: &TaskResult) -> String {
 
 /// Returns prior and posterior 10 % to 90 % intervals of the parameters as a table within 80 columns.
 pub fn parameters_text(calibration: &Calibration) -> String {
-    let row = |one: ParameterUpdate| {
-        let span = |low: f64, high: f64| format!("{low:.2} to {high:.2}");
+    let row = |(one, Coordinate { parameter, .. }): (ParameterUpdate, &Coordinate)| {
+        let span = |low: f64, high: f64| parameter.with_unit(&format!("{low:.2} to {high:.2}"));
         let task = one.task.map_or(String::new(), |task| format!(" ({task})"));
         let moved = if one.moved { "yes" } else { "no" }.to_owned();
         let after = span(one.posterior_low, one.posterior_high);
         [one.name + &task, span(one.prior_low, one.prior_high), after, moved]
     };
-    let head = ["parameter (10 % to 90 %)", "before", "after", "moved"];
+    let head = ["parameter (×: of its file)", "before, 10 to 90 %", "after", "moved"];
     let alike = confounded(calibration).into_iter().map(|pair| {
         let ([a, b], correlation) = (pair.parameters, pair.correlation);
         format!("not distinguished: {a} and {b} (correlation {correlation:+.2})\n")
     });
-    text_table(1, head, updates(calibration).into_iter().map(row)) + &alike.collect::<String>()
+    let rows = updates(calibration).into_iter().zip(&calibration.layout.coordinates).map(row);
+    text_table(1, head, rows) + &alike.collect::<String>()
 }

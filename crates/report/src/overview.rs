@@ -77,6 +77,7 @@ fn drawing_and_files(answer: &Answer, files: &PageFiles) -> Option<Markup> {
     let names = printer::FILES.into_iter().filter(|(file, _)| files.files.contains(file));
     Some(html! {
         div.finger { (figure(&svg, "drawing of the finger", &caption)) }
+        @if !files.files.is_empty() { p { "Files of " (design(finger)) ":" } }
         p.files { @for (file, name) in names { a.button href=(file) { (name) } } }
     })
 }

@@ -65,8 +65,9 @@ pub struct Written {
 }
 
 impl command::Request for Request {
-    fn run(&self, _context: &Context<'_>) -> Result<Output, Failure> {
+    fn run(&self, context: &Context<'_>) -> Result<Output, Failure> {
         let geometry = self.finger.geometry()?;
+        self.finger.notes()?.iter().for_each(|note| context.note(note));
         let (out, title) = (&self.out, export::title(&geometry));
         let failure = |error: &dyn Display| Failure::running(format!("{}: {error}", out.display()));
         let project = |bytes: Result<Vec<u8>, PrismError>| -> Result<(), Failure> {

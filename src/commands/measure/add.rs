@@ -1,6 +1,6 @@
 //! `optimize measure add`: adds a line to a measurement file.
 
-use crate::setup::measured::BENCH_FILE;
+use crate::setup::measured::BenchFileRequest;
 use crate::terminal::say;
 use crate::{Context, Failure, Output, TaskFile, command, read_task};
 use calibration::experiments::{
@@ -23,12 +23,9 @@ use std::path::Path;
                   --range-mm 5.7 --failure-negative 3 --failure-positive 3"
 )]
 pub struct Request {
-    /// The file
-    #[arg(value_name = "FILE", default_value = BENCH_FILE)]
-    pub file: String,
-    /// The file, by the option of other commands
-    #[arg(long, hide = true, value_name = "FILE", conflicts_with = "file")]
-    pub measurements: Option<String>,
+    /// The file.
+    #[command(flatten)]
+    pub file: BenchFileRequest,
     /// Task: ket8, ket12, rj45, usb, rj45_latch, usb_a, the path of a task file, or a name in the measurement file
     #[arg(long, value_name = "NAME")]
     pub task: Option<String>,
@@ -91,7 +88,7 @@ fn setting(text: &str) -> Result<(String, String), String> {
 
 impl command::Request for Request {
     fn run(&self, _context: &Context<'_>) -> Result<Output, Failure> {
-        let (file, mut cells) = (self.measurements.as_ref().unwrap_or(&self.file), self.cells());
+        let (file, mut cells) = (self.file.name(), self.cells());
         if MEASUREMENTS.iter().any(|shipped| shipped.name == file) {
             let problem = format!("`{file}` is shipped; give the path of your own file");
             return Err(Failure::usage(problem));

@@ -1,17 +1,20 @@
 //! `optimize measure check`: checks a measurement file.
 
-use crate::setup::measured::{self, BENCH_FILE};
+use crate::setup::measured::{self, BenchFileRequest};
 use crate::{Context, Failure, Output, command, read_task};
 use calibration::experiments::Experiment;
 use serde_json::{Value, json};
 
 /// Check a measurement file: implausible units, windows without the start, duplicate lines, unknown tasks
 #[derive(Debug, clap::Args)]
-#[command(after_help = "Example: optimize measure check bench.csv")]
+#[command(
+    mut_arg("file", |file| file.help("The file, or `published` for the shipped one")),
+    after_help = "Example: optimize measure check bench.csv"
+)]
 pub struct Request {
-    /// The file, or `published` for the shipped one
-    #[arg(value_name = "FILE", default_value = BENCH_FILE)]
-    pub file: String,
+    /// The file.
+    #[command(flatten)]
+    pub file: BenchFileRequest,
     /// File of your own task that is not named in a comment line; may be given several times
     #[arg(long, value_name = "FILE.toml")]
     pub task: Vec<String>,
@@ -25,7 +28,8 @@ impl command::Request for Request {
         let own = self.task.iter().map(|name| Ok(read_task(name)?.task.name));
         let own = own.collect::<Result<Vec<_>, Failure>>()?;
         let own: Vec<&str> = own.iter().map(String::as_str).collect();
-        let found = measured::read(&self.file, &own)?;
+        let file = self.file.name();
+        let found = measured::read(file, &own)?;
         let of_task = |of: &[Experiment]| {
             let count = |least: Option<bool>| {
                 of.iter().filter(|line| line.extent().map(|(_, least)| least) == least).count()
@@ -49,7 +53,7 @@ impl command::Request for Request {
         // The lines are sorted by task.
         let tasks = found.chunk_by(|a, b| a.task == b.task).map(of_task);
         let (tasks, text): (Vec<Value>, String) = tasks.unzip();
-        let (file, lines) = (&self.file, found.len());
+        let lines = found.len();
         let text =
             text + &format!("{file}: {}, no problems found\n", input::counted(lines, "line"));
         let mut value = json!({"file": file, "lines": lines, "tasks": tasks});

@@ -2,6 +2,7 @@
 
 use crate::layout::{lines, wrapped};
 use crate::setup::files::{check_is_new, robot};
+use crate::setup::task::warn_of_weak_grip;
 use crate::setup::tune::{outcome, ranges, step_json, tried, turned_text};
 use crate::setup::words::parse_number;
 use crate::{Context, Failure, Output, RobotRequest, TaskFile, TaskSource, command, not_stopped};
@@ -11,6 +12,7 @@ use connector::{picture, rewrite};
 use input::Place;
 use input::shipped::{Source, TASKS};
 use input::units::{DEG, MM, N_PER_MM};
+use insertion::outcome::stop_words;
 use insertion::task::parts_file::without_parts;
 use insertion::task::{Limits, is_of_name};
 use insertion::{Finger, Robot, Strategy, Task, Window};
@@ -92,6 +94,10 @@ impl command::Request for Request {
             return Err(Failure::task(Place::file(file).key(key).fault(format!("{text}; {more}"))));
         }
         let robot = robot(&self.robot.name)?;
+        if let Some(force_n) = self.max_force_n.filter(|force_n| *force_n > robot.stop_force) {
+            context.note(&format!("--max-force-n {force_n}{}", above_stop(&robot, force_n)));
+        }
+        warn_of_weak_grip(&file.task, &robot, self.robot.engine, context)?;
         let tuner = self.tuner(&file.task, &robot, stop);
         let report = |what: &str, cost: usize, done, of| {
             context.part(what, [done, of], cost as f64);
@@ -264,11 +270,20 @@ fn json(TunedTask { tuner, tuned, after, written, .. }: &TunedTask<'_>) -> Value
     })
 }
 
+/// Returns the words that follow a force with which the robot stops; empty for another one.
+fn above_stop(Robot { name, stop_force, .. }: &Robot, force_n: f64) -> String {
+    match force_n > *stop_force {
+        true => format!(", but the robot {name} stops at {stop_force} N"),
+        false => String::new(),
+    }
+}
+
 /// Returns the error if no strategy inserts.
 fn failure(file: &str, TunedTask { tuner, tuned, after, .. }: &TunedTask<'_>) -> Option<Failure> {
     let within = tuned.least_force_n().zip(tuner.limits.force);
     let (within, accepted) = within.map_or(Default::default(), |(least_n, limit_n)| {
-        let accepted = format!("\naccepted: --max-force-n of {:.0} or more", least_n.ceil());
+        let accepted = format!("\naccepted: --max-force-n of {:.0} or more", least_n.ceil())
+            + &above_stop(tuner.robot, least_n.ceil());
         (format!(" with at most {limit_n:.0} N"), accepted)
     });
     let tried = wrapped(&format!("tried:        {}", tried(tuned)));
@@ -291,8 +306,9 @@ fn text(done: &TunedTask<'_>) -> String {
                 format!(", where `{plug}` meets `{socket}`")
             });
             let (depth, tilt) = (nearest.depth_mm, nearest.tilt_deg);
-            let how = format!("{} in `{}`, {depth:.1} mm deep", nearest.outcome, nearest.phase);
-            line("nearest", format!("{how}, {tilt:.1}° off{met}"))
+            let how = nearest.outcome.to_owned() + stop_words(nearest.robot_stopped);
+            let at = format!("in `{}`, {depth:.1} mm deep, {tilt:.1}° off{met}", nearest.phase);
+            line("nearest", format!("{how}, {at}"))
         })),
         Some(after) => {
             let best = tuned.best();

@@ -170,7 +170,7 @@ fn density(text: &str) -> Result<f64, String> {
 /// Parses an infill direction, degrees.
 fn direction(text: &str) -> Result<f64, String> {
     let degrees = number(text)?;
-    let radians = wrong_unit::angle(degrees, [0.0, 90.0], 1.0).map(|radians| radians.join(" "));
+    let radians = wrong_unit::angle(degrees, [0.0, 90.0], 0.1).map(|radians| radians.join(" "));
     radians.or_else(|| numbers::problem(DIRECTION_KEY, degrees)).map_or(Ok(degrees), Err)
 }
 

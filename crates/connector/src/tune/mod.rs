@@ -308,6 +308,7 @@ impl Tuned {
         });
         Some(Stopped {
             outcome: trial.outcome.label(),
+            robot_stopped: trial.robot_stopped,
             phase: phase.name.clone(),
             depth_mm: trial.depth_mm,
             tilt_deg: trial.tilt_deg,
@@ -351,6 +352,8 @@ const TOUCHING: f64 = 0.05 * MM;
 pub struct Stopped {
     /// Kind of failure.
     pub outcome: &'static str,
+    /// Whether the robot stopped.
+    pub robot_stopped: bool,
     /// Phase in which the trial ended.
     pub phase: String,
     /// Depth of the tip below the socket's top, mm.

@@ -17,7 +17,7 @@ use calibration::identify::unknown::{Unknown, ValueOrigin};
 use input::units::MM;
 use insertion::Outcome;
 use maud::{Markup, PreEscaped, html};
-use parameters::{Parameter, Scale, Transform};
+use parameters::{Parameter, Scale};
 use plotters::prelude::Color;
 
 /// Largest number of plotted points of a curve, and number of samples before the first contact (0.1 s).
@@ -167,14 +167,10 @@ fn unknown(one: &Unknown) -> Vec<Markup> {
 
 /// Returns value and standard deviation of a parameter, or its bounds, with the unit.
 pub(super) fn amount(row: &Parameter) -> String {
-    let (sign, unit) = match row.transform {
-        Transform::Factor => ("× ", ""),
-        Transform::Shift | Transform::Value => ("", row.path.unit()),
-    };
-    match row.value.zip(row.sd) {
-        Some((value, sd)) => format!("{sign}{} ± {}{unit}", short(value), short(sd)),
-        None => format!("{sign}{} to {}{unit}", short(row.low), short(row.high)),
-    }
+    row.with_unit(&match row.value.zip(row.sd) {
+        Some((value, sd)) => format!("{} ± {}", short(value), short(sd)),
+        None => format!("{} to {}", short(row.low), short(row.high)),
+    })
 }
 
 /// Returns the standard deviation of a parameter on its scale, that of its logarithm for a log scale; without a value,

@@ -107,6 +107,14 @@ fn calibration_and_the_next_print_answer_in_the_agreed_form() {
     assert_eq!((next["next"].as_array().map(Vec::len), &next["stop"]), (Some(2), &false.into()));
     assert!(next["next"][0]["reason"].as_str().is_some_and(|reason| !reason.is_empty()));
     assert!(next["next"][0]["expected_gain_mm"].as_f64().is_some_and(|gain| gain > 0.0));
+    // A finger that is expected to be wider than those measured is worth a print, though its measurement decides nothing.
+    let lines = format!("{HEAD}usb,10,0,5.6\nusb,20,40,4.1\nusb,30,20,6.1\n");
+    let file = folder.file("usb.csv", lines);
+    let usb = few.replace("ket8", "usb").replace("--simulations 24", "--simulations 40");
+    let wider = optimize_line(&format!("next {usb} {file}")).json();
+    let gain = |key| wider["next"][0][key].as_f64().expect("a gain");
+    assert!(gain("expected_gain_mm") < 0.1 && gain("gain_in_use_mm") > 0.3, "{wider}");
+    assert_eq!(wider["stop"], false, "{wider}");
     // A finger that was printed and inserts from no start is not printed again, nor chosen.
     let finger = ["infill_density_percent", "infill_direction_deg"].map(|key| {
         next["next"][0]["values"].get(key).or(next["next"][0].get(key)).unwrap().to_string()

@@ -238,7 +238,10 @@ class Print(Result):
     expected_mm: float
     low_mm: float
     high_mm: float
+    #: Expected increase of the largest expected range of all fingers by measuring this one.
     expected_gain_mm: float
+    #: The same of the printed fingers alone: what printing it gains for use.
+    gain_in_use_mm: float
     #: Probability that its range is larger than that of the best measured finger, 0 to 1.
     probability_better: float | None
     needs_print: bool
@@ -258,7 +261,7 @@ class Choice(Result):
 
 @dataclass(frozen=True, repr=False)
 class Advice(Result):
-    """Fingers to print next; ``stop`` if no print is worth its expected gain."""
+    """Fingers to print next; ``stop`` if no print is worth its expected gains."""
 
     task: str
     measured: int

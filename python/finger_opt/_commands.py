@@ -441,7 +441,7 @@ def levers(
 
 @checked
 def calibrate(
-    measurements: StrPath,
+    measurements: StrPath = "bench.csv",
     task: Given | Iterable[Given] | None | None = None,
     *,
     space: SpaceName | StrPath = "infill",
@@ -560,7 +560,7 @@ def identify(
 
 @checked
 def next_print(
-    measurements: StrPath,
+    measurements: StrPath = "bench.csv",
     task: Given | Iterable[Given] | None | None = None,
     *,
     space: SpaceName | StrPath = "infill",

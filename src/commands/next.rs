@@ -151,7 +151,11 @@ fn interval(expected_mm: f64, low_mm: f64, high_mm: f64) -> String {
 
 /// Returns a recommended print as text; `verb` is that of a finger that has to be printed.
 fn print(print: &Print, verb: &str, when: &str) -> String {
-    let (finger, gain) = (design(&print.design), print.expected_gain_mm);
+    let finger = design(&print.design);
+    let gain = match print.probability_better {
+        Some(_) => format!("expected gain {:.2} mm over those printed", print.gain_in_use_mm),
+        None => format!("expected gain {:.2} mm", print.expected_gain_mm),
+    };
     let (verb, printed) = match print.needs_print {
         true => (verb, ""),
         false => ("Measure", "   no print: this finger was printed; set the other numbers\n"),
@@ -162,7 +166,7 @@ fn print(print: &Print, verb: &str, when: &str) -> String {
     });
     let expected = interval(print.expected_mm, print.low_mm, print.high_mm);
     format!(
-        "{verb} {finger}{when}: expected gain {gain:.2} mm{better}\n{printed}   expected {expected}: {}\n",
+        "{verb} {finger}{when}: {gain}{better}\n{printed}   expected {expected}: {}\n",
         print.reason
     )
 }

@@ -29,6 +29,9 @@ pub struct Print {
     pub high_mm: f64,
     /// Expected increase of the largest expected range of all fingers by measuring this one, mm.
     pub expected_gain_mm: f64,
+    /// Expected increase of the largest expected range of the printed fingers, those listed before this one included, by
+    /// printing and measuring it, mm: what printing gains for use; its expected range if none was printed.
+    pub gain_in_use_mm: f64,
     /// Probability that its range is larger than that of the best measured finger; `None` if none was measured.
     pub probability_better: Option<f64>,
     /// Whether the finger has to be printed; otherwise it exists, and only the strategy is new.
@@ -73,7 +76,7 @@ pub struct Advice {
     pub next: Vec<Print>,
     /// The finger to use if nothing more is printed; `None` without fingers.
     pub choice: Option<Choice>,
-    /// Whether the expected gain of every print is below its cost.
+    /// Whether both expected gains of every print are below its cost.
     pub stop: bool,
 }
 
@@ -138,11 +141,13 @@ pub fn advise(
     while next.len() < count {
         let gains = ranges.gains(&printed);
         let needs_print = |column: usize| !at_hand.contains(&all[column]);
-        let net =
-            |gain: &Gain| gain.value_mm - if needs_print(gain.column) { cost_mm } else { 0.0 };
+        let net = |gain: &Gain| {
+            gain.choice_mm + gain.use_mm - if needs_print(gain.column) { cost_mm } else { 0.0 }
+        };
         let first = gains.iter().rev().max_by(|a, b| net(a).total_cmp(&net(b)));
-        let Some(&Gain { column, choice_mm, .. }) = first else { break };
-        stop &= !next.is_empty() || gains.iter().all(|gain| gain.choice_mm < cost_mm);
+        let Some(&Gain { column, choice_mm, use_mm }) = first else { break };
+        let small = |gain: &Gain| gain.choice_mm.max(gain.use_mm) < cost_mm;
+        stop &= !next.is_empty() || gains.iter().all(small);
         let [mean_mm, low_mm, high_mm] = given.expected(column);
         let expected_mm = mean_mm.max(0.0);
         let tried: Vec<StiffnessPoint> =
@@ -160,6 +165,7 @@ pub fn advise(
             low_mm,
             high_mm,
             expected_gain_mm: choice_mm,
+            gain_in_use_mm: use_mm,
             probability_better: in_use.map(|(best, ..)| given.probability_above(column, best)),
             needs_print: needs_print(column),
             reason,
@@ -199,8 +205,8 @@ struct Gain {
     column: usize,
     /// Increase of the largest expected range of all fingers.
     choice_mm: f64,
-    /// Sum of `choice_mm` and the increase of the largest expected range of the printed fingers.
-    value_mm: f64,
+    /// Increase of the largest expected range of the printed fingers.
+    use_mm: f64,
 }
 
 impl Ranges {
@@ -252,7 +258,7 @@ impl Ranges {
             let all: Vec<usize> = (0..self.means.len()).collect();
             let choice_mm = (of(&all) - largest(&all)).max(0.0);
             let with_own = of(&[printed, &[column]].concat());
-            Gain { column, choice_mm, value_mm: choice_mm + with_own - largest(printed) }
+            Gain { column, choice_mm, use_mm: with_own - largest(printed) }
         };
         let left = (0..self.means.len()).into_par_iter().filter(|column| !printed.contains(column));
         left.map(gain).collect()

@@ -48,21 +48,6 @@ fn what_was_hidden_is_found_and_goes_into_every_command() {
     optimize_line(&format!("{trial} --robot servo")).fails(2, &["--cell contains a robot"]);
 }
 
-#[test]
-fn a_bad_log_is_named_and_nothing_is_written() {
-    let folder = Studies::new();
-    let runs = hidden(&folder);
-    let bad = folder.read("30-1.csv");
-    let line = bad.lines().nth(99).unwrap();
-    let (most, _) = line.rsplit_once(',').unwrap();
-    folder.file("30-1.csv", bad.replace(line, &format!("{most},NaN")));
-    let (cell, page) = (folder.word("cell.toml"), folder.word("page.html"));
-    let identify = format!("identify --task usb --runs {runs} --out {cell} --report {page}");
-    optimize_line(&identify)
-        .fails(2, &["30-1.csv: line 100: target_z_mm", "is not a finite number"]);
-    assert!(!folder.dir("cell.toml").exists() && !folder.dir("page.html").exists());
-}
-
 /// The text of a log with the columns of these names multiplied.
 fn scaled(log: &str, names: &[&str], by: f64) -> String {
     let (header, rows) = log.split_once('\n').unwrap();

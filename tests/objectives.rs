@@ -1,6 +1,6 @@
 //! Objectives, constraints, fronts and several tasks, through the real binary on the fake engine.
 
-use crate::common::{Ran, Studies, command, fake, optimize, optimize_line, run};
+use crate::common::{Ran, Studies, command, fake, optimize_line, run};
 use serde_json::Value;
 use std::fs;
 
@@ -184,17 +184,6 @@ fn constraints_bound_the_front_and_three_objectives_are_possible() {
     }
 }
 
-#[test]
-fn a_force_is_made_small() {
-    let studies = Studies::new();
-    let result = studies.study("s", 20, &["--objective", "peak-force", "--json"]).json();
-    let forces = studies.numbers("s", "objective_n");
-    let least = forces.into_iter().fold(f64::INFINITY, f64::min);
-    assert_eq!(number(&result["best"]["objective_n"]), least);
-    assert_eq!(least, 8.0, "the shortest reach there is");
-    assert!(studies.journal("s").contains("\"directions\":[1]"));
-}
-
 /// A second task for the closed form: usb with the remote centre elsewhere.
 fn far(studies: &Studies) -> String {
     let text = include_str!("../tasks/usb.toml").replace("name = \"usb\"", "name = \"far\"");
@@ -292,18 +281,4 @@ fn bad_goals_are_answered_with_2_and_what_would_be_right() {
     }
     optimize_line("evaluate --task usb,rj45 --density 20 --direction 10").fails(2, &["one --task"]);
     evaluate(20, 10, &["--seed", "1"]).fails(2, &["--uncertainty"]);
-}
-
-#[test]
-fn changed_goals_are_another_study_and_odd_ones_are_not_compared() {
-    let studies = Studies::new();
-    studies.study("s", 4, &["--constraint", "slip<=1"]).succeeds();
-    let changed = "constraints.0: the study has \"slip<=1\", now has nothing";
-    studies.study("s", 4, &[]).fails(2, &[changed]);
-    studies.study("s", 4, &["--task", "usb,rj45"]).fails(2, &["tasks.1"]);
-    studies.study("front", 4, &["--objective", "range,slip"]).succeeds();
-    let dir = |name| studies.word(name);
-    optimize(&["compare", &dir("front")]).fails(2, &["range,slip", "one objective in mm"]);
-    optimize(&["compare", &dir("s"), &dir("front")]).fails(2, &["objective"]);
-    optimize(&["compare", &dir("s")]).succeeds();
 }

@@ -6,7 +6,6 @@ use connector::check::{Problem, problems};
 use connector::draft::{Dimensions, Size, draft};
 use connector::mesh::{Body, Surface, pick, read};
 use connector::nominal::{explain, weak_grip};
-use finger_opt::setup::task::TaskFile;
 use input::shipped::TASKS;
 use input::units::MM;
 use insertion::outcome::Outcome;
@@ -147,22 +146,6 @@ fn each_fault_is_caught_with_its_key_and_what_would_be_right() {
     }
 }
 
-/// Fields that were not read from a file have no line.
-#[test]
-fn a_field_of_a_wrong_type_is_named_with_its_value() {
-    let mut fields: Value = toml::from_str(USB).unwrap();
-    let said = |fields: &Value| TaskFile::of_fields("mine", fields).unwrap_err().to_string();
-    fields["strategy"]["start_mm"][2] = "high".into();
-    let wrong = "invalid type: string \"high\", expected f64";
-    assert_eq!(said(&fields), format!("mine: strategy.start_mm: {wrong}"));
-    fields["strategy"]["start_mm"][2] = 51.0.into();
-    fields["strategy"]["phase"][0]["speed_mm_per_s"] = true.into();
-    assert!(
-        said(&fields)
-            .starts_with("mine: strategy.phase.speed_mm_per_s: invalid type: boolean `true`")
-    );
-}
-
 /// Returns the only problem of the usb task with one passage replaced: key, problem and remedy.
 fn only_problem(from: &str, to: &str) -> [String; 3] {
     let mut found = problems(&changed(USB, from, to).unwrap());
@@ -207,19 +190,6 @@ fn a_wrong_unit_of_one_number_is_the_only_problem() {
     }
     for (from, to) in [("tilt_deg = 4.0", "tilt_deg = 0.3"), (shell, "x_mm = [-0.25, 0.25]")] {
         assert_eq!(problems(&changed(USB, from, to).unwrap()), [], "{to}");
-    }
-}
-
-#[test]
-fn a_success_depth_beyond_the_plug_is_the_only_problem() {
-    for (depth_mm, problem) in [
-        ("60.0", "is 60 mm; the plug, 50.7 mm long, stops 12.57 mm below the top"),
-        ("30.0", "is 30 mm; the plug, 50.7 mm long, stops 12.57 mm below the top"),
-        ("16.0", "is 16 mm; the plug, 50.7 mm long, stops 12.57 mm below the top"),
-    ] {
-        let found = only_problem("depth_mm = 12.0", &format!("depth_mm = {depth_mm}"));
-        assert_eq!(found[0], "success.depth_mm");
-        assert!(found[1].starts_with(problem) && found[2].starts_with("at most 12"), "{found:?}");
     }
 }
 
@@ -375,17 +345,10 @@ fn a_task_is_copied_like_another_and_shown_as_it_is() {
 #[test]
 fn a_check_says_what_a_reader_finds() {
     let folder = Studies::new();
-    for (from, to, key) in [
-        ("mass_g = 5.0", "mass_g = 0.0", "plug.mass_g"),
-        ("mass_g = 5.0", "", "plug.mass_g"),
-        ("force_n", "force", "grip.force"),
-    ] {
-        let file = folder.file("bad.toml", USB.replace(from, to));
-        let ran = said("task check --json", &[&file]);
-        ran.fails(2, &["1 problem"]);
-        let found: Value = serde_json::from_str(&ran.stdout).unwrap();
-        assert_eq!(found["problems"][0]["key"], key);
-    }
+    let file = folder.file("bad.toml", USB.replace("mass_g = 5.0", "mass_g = 0.0"));
+    let ran = said("task check --json", &[&file]);
+    ran.fails(2, &["1 problem"]);
+    assert!(ran.stdout.contains("\"key\":\"plug.mass_g\""), "{}", ran.stdout);
     // Each fault is a problem; one of a name of which only some are accepted does not end the list.
     let several = USB.replace("mass_g = 5.0", "").replace("force_n", "force");
     let lines = several.lines().filter(|line| !line.starts_with("hold = "));

@@ -59,7 +59,6 @@ fn where_nothing_inserts_it_is_said_with_what_stopped_the_plug() {
     let own = folder.file("own.toml", &weak);
     let found = json(&["tune", &own], 1);
     assert_eq!((&found["inserts"], &found["after"]), (&Value::Bool(false), &Value::Null));
-    assert_eq!(found, json(&["tune", &own, "--dry-run"], 1), "a seeded search differs");
     assert_eq!(found["nearest"]["outcome"], "contact loss before insertion");
     assert!(found["nearest"]["phase"].is_string(), "{found}");
     assert_eq!(read_to_string(&own).unwrap(), weak, "a file is written");

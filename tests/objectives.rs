@@ -2,7 +2,6 @@
 
 use crate::common::{Ran, Studies, command, fake, optimize_line, run};
 use serde_json::Value;
-use std::fs;
 
 /// A journal's evaluations, without its header.
 fn evaluations(studies: &Studies, name: &str) -> Vec<Value> {
@@ -41,28 +40,6 @@ fn a_success_rate_is_that_of_the_evaluation_with_the_studys_seed() {
     assert_eq!(rates, studies.column("s", "objective_share"));
     assert!(studies.page("s").contains("95 % interval"));
     studies.study("s", 12, &["--objective", "success-rate"]).says(&["95 % interval"]);
-}
-
-#[test]
-fn errors_from_a_file_are_kept_with_the_study() {
-    let studies = Studies::new();
-    let text = include_str!("../uncertainties/typical.toml");
-    let text = text.replace("samples = 12", "samples = 5").replace("\"typical\"", "\"mine\"");
-    let file = studies.file("errors.toml", &text);
-    studies.study("s", 10, &["--objective", "robust-range", "--uncertainty", &file]).succeeds();
-    for line in evaluations(&studies, "s") {
-        let robust = &line["user_attrs"]["tasks"][0];
-        assert_eq!(robust["robust_ranges_mm"].as_array().map(Vec::len), Some(5));
-        assert_eq!(line["values"][0], robust["robust_range_mm"]);
-        assert!(line["user_attrs"]["tasks"][0].get("success_rate").is_none(), "not asked for");
-    }
-    fs::remove_file(&file).unwrap();
-    studies.resume("s").succeeds();
-    assert_eq!(studies.read("s/inputs/uncertainty.toml"), text);
-    let config = studies.read("s/study.toml");
-    assert!(config.contains("uncertainty = \"mine\""), "{config}");
-    studies.file("s/inputs/uncertainty.toml", "");
-    studies.resume("s").fails(2, &["uncertainty.toml", "was changed"]);
 }
 
 #[test]
@@ -229,23 +206,7 @@ fn several_tasks_are_evaluated_and_aggregated() {
     let more = ["--task", &tasks, "--optimizer", "sobol", "--json"];
     let best = studies.study("min", 6, &more).json()["best"]["tasks"].clone();
     assert_eq!((&best[0]["task"], &best[1]["task"]), (&"usb".into(), &"far".into()));
-}
-
-#[test]
-fn a_study_of_several_tasks_keeps_them_and_has_its_own_folder() {
-    let studies = Studies::new();
-    let file = far(&studies);
-    let tasks = format!("usb,{file}");
-    let more = ["--task", &tasks, "--objective", "success-rate", "--constraint", "range>=5"];
-    studies.study("s", 12, &more).succeeds();
-    fs::remove_file(file).unwrap();
-    studies.resume("s").succeeds();
-    assert!(studies.read("s/inputs/task_2.toml").contains("\"far\""));
-    studies.report("s").succeeds();
-    let line = &evaluations(&studies, "s")[0];
-    let rate = |of: &Value| number(&of["success_rate"]);
-    let (usb, far) = (rate(&line["user_attrs"]["tasks"][0]), rate(&line["user_attrs"]["tasks"][1]));
-    assert_eq!(number(&line["values"][0]), usb.min(far));
+    assert!(studies.read("min/inputs/task_2.toml").contains("\"far\""));
     let mut named = command(&["--task", "usb,rj45", "--engine", "fake", "--budget", "2"]);
     run(named.current_dir(&studies.0)).succeeds();
     assert!(studies.dir("results/usb+rj45-gp-seed0/report.html").exists());

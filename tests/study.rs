@@ -374,7 +374,7 @@ fn the_order_on_the_bench_says_whose_it_is() {
 }
 
 #[test]
-fn confirming_costs_a_quarter_of_a_study_at_most_and_can_be_left_out() {
+fn confirming_costs_a_quarter_of_a_study_at_most() {
     let studies = Studies::new();
     studies.study("s", 200, &[]).succeeds();
     let kept: serde_json::Value = serde_json::from_str(&studies.read("s/walk.json")).unwrap();
@@ -389,11 +389,6 @@ fn confirming_costs_a_quarter_of_a_study_at_most_and_can_be_left_out() {
     }
     let spent = studies.numbers("s", "trials").iter().sum::<f64>() as u64;
     assert!(trials > 0 && 4 * trials <= spent, "{trials} of {spent}");
-
-    let json = studies.study("quick", 8, &["--no-confirm", "--json"]).json();
-    assert!(!studies.dir("quick").join("walk.json").exists() && json.get("walked").is_none());
-    assert_eq!(json["recommended"]["firm_range_mm"], serde_json::Value::Null);
-    assert_eq!(json["recommended"]["range_mm"], json["best"]["range_mm"]);
 }
 
 #[test]

@@ -139,20 +139,10 @@ fn a_force_that_the_connector_does_not_withstand_comes_first() {
     assert_eq!(answer["answer"]["force"]["limit_n"], 6.5);
     assert_eq!(answer["answer"]["verdict"], "simulated");
     assert!(studies.read("weak/report.html").contains("<b>force</b> up to"));
-    let strong = study("strong", 60.0);
-    assert!(strong.starts_with("Best in simulation, not supported by measurements: "), "{strong}");
-    // The published fingers were measured on the shipped task.
-    assert!(answer["answer"]["use_now"].is_null());
-    let shipped = studies.study("shipped", 30, &["--no-levers", "--no-map"]).succeeds().to_owned();
-    let best = "Use 30 % infill at 20° now: the best of 11 measured fingers, 6.1 mm on a robot\n";
-    assert!(shipped.starts_with(best), "{shipped}");
-    assert!(shipped.lines().nth(1).unwrap().contains("not supported by measurements"), "{shipped}");
     // A robot that stops near that force.
     let robot =
         include_str!("../robots/servo.toml").replace("stop_force_n = 150.0", "stop_force_n = 7.0");
     let robot = studies.file("robot.toml", robot);
-    let stops = studies.study("stops", 30, &["--robot", &robot, "--no-levers", "--no-map"]);
-    stops.says(&["the 7 N at which"]);
     let evaluate = "evaluate --task usb --density 20 --direction 10 --robot";
     let of = |robot: &str| fake(&format!("{evaluate} {robot}"));
     let evaluated = of(&robot).succeeds().to_owned();
@@ -346,34 +336,17 @@ fn a_design_outside_the_space_is_answered_with_its_bounds() {
     optimize_line("trial --help").says(&stiffness);
     fake("evaluate --task usb").fails(2, &["--density", "--stiffness-compliance"]);
     fake("evaluate --task usb --stiffness-compliance 3").fails(2, &["--stiffness-assembly"]);
-    for bad in ["0", "-3", "nan", "inf", "soft"] {
-        let stiffness = format!("--stiffness-assembly 20 --stiffness-compliance {bad}");
-        fake(&format!("evaluate --task usb {stiffness}")).fails(2, &["must lie in 0.000001"]);
-    }
     fake(&format!("{TRIAL} --offset-mm nan")).fails(2, &["--offset-mm"]);
 }
-
-const EXTRA: &str = "[[parameter]]
-key = 'speed_mm_per_s'
-low = 1.0
-high = 2.0
-step = 1.0
-source = ''
-[[parameter]]";
 
 #[test]
 fn a_bad_file_is_named_with_its_key() {
     let studies = Studies::new();
     let space = include_str!("../spaces/infill.toml");
-    for (from, to, part) in [
-        ("low = 10.0", "low = nan", "infill_density_percent"),
-        ("low = 10.0", "low = ", "line"),
-        ("infill_direction_deg", "infill_direction", "did you mean `infill_direction_deg`?"),
-        ("[[parameter]]", EXTRA, "unknown path `speed_mm_per_s`; a path begins with"),
-    ] {
-        let path = studies.file("space.toml", space.replacen(from, to, 1));
-        studies.study("s", 4, &["--space", &path]).fails(2, &["space.toml", part]);
-    }
+    let path =
+        studies.file("space.toml", space.replacen("infill_direction_deg", "infill_angle", 1));
+    let unknown = "unknown path `infill_angle`";
+    studies.study("s", 4, &["--space", &path]).fails(2, &["space.toml", "line", unknown]);
     let data = studies.file("data.csv", "density,stiffness\n1,2\n");
     studies.study("s", 4, &["--stiffness-data", &data]).fails(2, &["data.csv", "header"]);
     optimize_line(&format!("stiffness --svg {}", studies.word("none/of.svg"))).succeeds();
@@ -397,8 +370,6 @@ fn a_number_of_task_or_finger_can_be_set() {
     assert!((range("--set finger.rcc_mm=1").as_f64().unwrap() - as_in_the_paper) > 1.9);
     for (set, parts) in [
         ("finger.rcc_mm", &["KEY=NUMBER"][..]),
-        ("finger.rcc_mm=far", &["KEY=NUMBER"]),
-        ("finger.rcc_mm=nan", &["finger.rcc_mm must lie between 15 and 27"]),
         ("finger.rcc_mm=28", &["finger.rcc_mm must lie between 15 and 27"]),
         ("finger.mass_g=0", &["finger.mass_g: is 0; it must lie in"]),
         ("task.success.tilt_deg=-1", &["design: task.success.tilt_deg: is -1", "must lie in"]),
@@ -515,8 +486,8 @@ fn a_finger_is_computed_from_its_ribs() {
     assert!(studies.read("finger.svg").contains("20.0 N in z"));
     optimize_line(&format!("{infill} --load-n 5")).fails(2, &["--load-n", "for example -5,0"]);
     optimize_line(infill).says(&["pad and roof"]);
-    optimize_line("finger --density 120 --direction 0")
-        .fails(2, &["--density: is 120", "1 .. 100"]);
+    optimize_line("finger --density 0.2 --direction 0")
+        .fails(2, &["--density: is 0.2", "1 .. 100"]);
     optimize_line(&format!("{infill} --finger finray")).fails(2, &["did you mean `finray9`"]);
     // Measured on the paper's finger: 0.80 mm in place of 0.62 make it 26 % stiffer.
     let thicker = optimize_line(&format!("{infill} --json --set finger.skin.thickness_mm=0.8"));

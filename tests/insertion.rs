@@ -303,31 +303,6 @@ fn mounted(scene: &mut Scene, finger: &Finger, side: f64, inward: f64, geoms: Ve
     body
 }
 
-/// Loaded at its pad's middle in the engine, a computed finger is as stiff as it was measured there.
-#[test]
-fn a_computed_finger_is_as_stiff_at_its_pad_as_measured() {
-    let shoulder = direct("rj45").task.grip.shoulder();
-    let finger = computed();
-    for side in [-1.0, 1.0] {
-        let mut scene = Scene::default();
-        let body = mounted(&mut scene, &finger, side, 0.0, Vec::new());
-        let pad = nalgebra::Point3::new(0.0, 0.0, finger.pad.middle(shoulder));
-        for (axis, stiffness) in [(1, 2.6e3), (2, 45e3)] {
-            let mut force = Vector3::zeros();
-            force[axis] = 0.1;
-            let mut world = Direct::default().world(&scene);
-            let arm = pad - finger.centre(side);
-            world.push(body, force, arm.cross(&force));
-            for _ in 0..4000 {
-                world.step().unwrap();
-            }
-            let moved = world.pose(body) * pad - pad;
-            let found = 0.1 / moved[axis];
-            assert!((found / stiffness - 1.0).abs() < 1e-3, "{side} {axis}: {found}");
-        }
-    }
-}
-
 /// A part that is pushed up in the grasp is gripped harder, by as much as the springs pull at one another:
 /// the pads would move inward, and the part is in their way.
 #[test]

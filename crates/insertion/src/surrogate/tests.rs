@@ -143,6 +143,11 @@ fn errors_name_the_line_and_what_is_accepted() {
     }
     let empty = STIFFNESS[0].text.lines().next().unwrap();
     assert_eq!(parse(empty, "mine.csv"), Err(SurrogateError::Empty));
+    // A column in another unit than that of the header.
+    for (value, question) in [("1950", "divide by 1000"), ("0.00195", "multiply by 1000")] {
+        let one = parse(&format!("{empty}\n1,20,0,65,{value}\n"), "mine.csv");
+        refused(one, &["mine.csv", "stiffness_compliance_n_per_mm", question]);
+    }
 }
 
 #[test]

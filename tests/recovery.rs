@@ -60,19 +60,17 @@ fn a_resumed_study_answers_as_if_it_had_not_been_killed_whatever_its_flags() {
 #[test]
 fn one_signal_ends_a_study_soon_in_every_phase() {
     let folder = Studies::new();
-    for (i, signal) in ["INT", "TERM", "HUP"].into_iter().enumerate() {
-        // While it searches, and while it predicts the bench.
-        for (phase, budget) in [("search", 400), ("bench", 8)] {
-            let name = format!("{phase}-{i}");
-            let many = ["--task", "ket8", "--samples", "20000", "--measurements", "published"];
-            let flags: &[&str] = if phase == "bench" { &many } else { &[] };
-            let mut child = folder.begun(&name, budget, flags, 10);
-            std::thread::sleep(Duration::from_millis(if phase == "bench" { 1500 } else { 0 }));
-            assert!(child.try_wait().expect("it can be asked").is_none(), "{name} has ended");
-            let took = kill(child, signal);
-            assert!(took < SOON, "{name}: {took:?} after SIG{signal}");
-            folder.report(&name).succeeds();
-        }
+    // While it searches, and while it predicts the bench.
+    let many = ["--task", "ket8", "--samples", "20000", "--measurements", "published"];
+    for (signal, budget, flags, wait_ms) in
+        [("INT", 400, &[][..], 0), ("TERM", 400, &[], 0), ("HUP", 8, &many, 1500)]
+    {
+        let mut child = folder.begun(signal, budget, flags, 10);
+        std::thread::sleep(Duration::from_millis(wait_ms));
+        assert!(child.try_wait().expect("it can be asked").is_none(), "{signal}: it has ended");
+        let took = kill(child, signal);
+        assert!(took < SOON, "{took:?} after SIG{signal}");
+        folder.report(signal).succeeds();
     }
 }
 

@@ -1,6 +1,6 @@
 //! Studies: the same seed gives the same journal, whatever happens on the way.
 
-use crate::common::{HEAD, SLOW, Studies, end, optimize_line, read, run};
+use crate::common::{HEAD, SEARCH, SLOW, Studies, command, end, optimize_line, read, run};
 use ask_tell::OptimizerKind;
 use ask_tell::stream::stream;
 use rand::RngExt;
@@ -12,7 +12,7 @@ use std::process::Command;
 const BUDGET: u32 = 22;
 
 fn reference(studies: &Studies) -> String {
-    studies.study("reference", BUDGET, &[]).succeeds();
+    studies.study("reference", BUDGET, &SEARCH).succeeds();
     studies.journal("reference")
 }
 
@@ -23,8 +23,8 @@ fn the_same_seed_gives_the_same_journal_whatever_the_threads() {
     assert_eq!(expected.lines().count(), 2 + BUDGET as usize);
     for threads in ["1", "2", "8"] {
         let name = format!("threads-{threads}");
-        let study = &mut studies.command(&name, BUDGET, &["--threads", threads]);
-        run(study.env(SLOW.0, SLOW.1)).succeeds();
+        let study = &mut studies.command(&name, BUDGET, &SEARCH);
+        run(study.args(["--threads", threads]).env(SLOW.0, SLOW.1)).succeeds();
         assert_eq!(studies.journal(&name), expected, "{threads} threads");
     }
     studies.study("seed", BUDGET, &["--seed", "1"]).succeeds();
@@ -35,7 +35,7 @@ fn the_same_seed_gives_the_same_journal_whatever_the_threads() {
 fn every_optimizer_goes_on_under_a_raised_budget_as_if_it_had_been_so_from_the_start() {
     let studies = Studies::new();
     for optimizer in OptimizerKind::all().map(OptimizerKind::name) {
-        let more = ["--optimizer", optimizer];
+        let more = [&["--optimizer", optimizer][..], &SEARCH].concat();
         studies.study(&format!("{optimizer}-once"), 40, &more).succeeds();
         let raised = format!("{optimizer}-raised");
         for budget in [1, 3, 4, 9, 31, 40] {
@@ -69,9 +69,10 @@ fn any_torn_tail_is_cut_off_and_measured_again() {
     let path = studies.dir("reference").join("journal.jsonl");
     let whole = fs::read(&path).unwrap();
     let mut random = stream(0, 0, "tear");
+    let resume = || run(command(&["resume", "--quiet"]).args(SEARCH).arg(studies.dir("reference")));
     for _ in 0..12 {
         fs::write(&path, &whole[..random.random_range(0..whole.len())]).unwrap();
-        studies.resume("reference").succeeds();
+        resume().succeeds();
         assert_eq!(studies.journal("reference"), expected);
     }
     fs::OpenOptions::new().append(true).open(&path).unwrap().write_all(&[0; 100]).unwrap();

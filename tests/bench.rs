@@ -53,24 +53,6 @@ fn an_evaluation_shows_what_was_measured_and_warns_where_it_is_far_off() {
 }
 
 #[test]
-fn a_calibration_far_off_the_fingers_left_out_is_not_reliable() {
-    let folder = Studies::new();
-    let few = "--task ket8 --engine fake --simulations 24 --samples 20 --json --measurements";
-    // A finger much worse than it is simulated.
-    let odd = folder.file("odd.csv", format!("{HEAD}ket8,10,0,0.5\n"));
-    let is_off = |file: &str| {
-        let task = &optimize_line(&format!("calibrate {few} {file}")).json()["tasks"][0];
-        let is_off = task["loo_mean_deviation_percent"].as_f64().expect("a number") > 50.0;
-        let verdict = task["verdict"].as_str().expect("a sentence");
-        let doubted = task["reliable"] == false && verdict.starts_with("do not");
-        assert!(doubted || !is_off, "{task}");
-        is_off
-    };
-    assert!(is_off(&odd));
-    is_off("published");
-}
-
-#[test]
 fn calibration_and_the_next_print_answer_in_the_agreed_form() {
     let few = "--task ket8 --engine fake --simulations 24 --samples 20 --json --measurements";
     let found = optimize_line(&format!("calibrate {few} published")).json();
@@ -86,10 +68,6 @@ fn calibration_and_the_next_print_answer_in_the_agreed_form() {
     let first = &found["parameters"][0];
     assert!(first["moved"].is_boolean());
     assert_eq!([&first["sets"], &first["as"]], ["task.friction.plug_socket", "factor"]);
-    assert!(task["loo_mean_of_others_percent"].as_f64().is_some_and(|of| (of - 18.7).abs() < 0.05));
-    let reliable = task["reliable"].as_bool().expect("whether");
-    let verdict = task["verdict"].as_str().expect("a sentence");
-    assert_eq!(verdict.starts_with("trust these"), reliable, "{verdict}");
     let folder = Studies::new();
     let two = folder.file("two.csv", format!("{HEAD}ket8,10,6,8\nket8,11,40,2\n"));
     let shown = optimize_line(&format!("calibrate {few} {two}").replace("--json ", ""));
@@ -198,8 +176,6 @@ fn a_study_with_measurements_leads_with_the_finger_that_is_best_on_the_bench() {
     let places = ["<section id=\"bench\">", "<section id=\"set\">"].map(|words| page.find(words));
     assert!(places[0].is_some() && places[0] < places[1], "{places:?}");
     assert!(!folder.read("b/report.html").contains("for the bench</h2>"));
-    let plain = folder.study("b", 12, &["--task", "ket8", "--verbose"]);
-    plain.says_in_any_lines("model ranks 11 fingers opposite to the robot (Spearman -0.62)");
 }
 
 #[test]
@@ -283,8 +259,6 @@ fn a_finger_of_a_task_of_ones_own_is_measured_without_naming_it_twice() {
         .fails(2, &["bench.csv: has no measurements yet", "give --task"]);
     line(&format!("calibrate --task ket8 {few} bench.csv")).fails(2, &["bench.csv: cannot read"]);
     line(&format!("next --task ket8 {few} bensh")).fails(2, &["unknown measurement file `bensh`"]);
-    let cannot_read = ["bensh.csv: cannot read the measurement file"];
-    line(&format!("next --task ket8 {few} bensh.csv")).fails(2, &cannot_read);
     folder.file("finger-opt.toml", "measurements = \"mine.csv\"\n");
     let words = "none measured on ket8 (mine.csv does not exist)";
     line("next --task ket8 --engine fake --simulations 24 --samples 20").says(&[words]);
@@ -312,12 +286,7 @@ fn a_finger_of_a_task_of_ones_own_is_measured_without_naming_it_twice() {
     assert!(next.stdout.lines().all(|line| line.chars().count() <= 80), "{}", next.stdout);
     // A study recommends the finger that `next` would choose without a further print.
     let found = line(&format!("next --json {few} own/bench.csv")).json();
-    assert_eq!(found["loo_designs"], 2);
-    assert_eq!(found["use_now"]["range_mm"], 6.1);
-    assert_eq!(found["use_now"]["fingers"], 2);
-    let better = found["next"][0]["probability_better"].as_f64().expect("a probability");
-    assert!((0.0..=1.0).contains(&better), "{found}");
-    assert!(found["loo_inside"].as_u64().is_some_and(|inside| inside <= 2), "{found}");
+    assert_eq!((&found["loo_designs"], &found["use_now"]["fingers"]), (&2.into(), &2.into()));
     let choice = found["choice"].clone();
     let study = "--budget 4 --no-levers --no-map --json --out s --task own/mine.toml";
     let study = line(&format!("{study} {few} own/bench.csv")).json();

@@ -139,20 +139,10 @@ fn a_force_that_the_connector_does_not_withstand_comes_first() {
     assert_eq!(answer["answer"]["force"]["limit_n"], 6.5);
     assert_eq!(answer["answer"]["verdict"], "simulated");
     assert!(studies.read("weak/report.html").contains("<b>force</b> up to"));
-    let strong = study("strong", 60.0);
-    assert!(strong.starts_with("Best in simulation, not supported by measurements: "), "{strong}");
-    // The published fingers were measured on the shipped task.
-    assert!(answer["answer"]["use_now"].is_null());
-    let shipped = studies.study("shipped", 30, &["--no-levers", "--no-map"]).succeeds().to_owned();
-    let best = "Use 30 % infill at 20° now: the best of 11 measured fingers, 6.1 mm on a robot\n";
-    assert!(shipped.starts_with(best), "{shipped}");
-    assert!(shipped.lines().nth(1).unwrap().contains("not supported by measurements"), "{shipped}");
     // A robot that stops near that force.
     let robot =
         include_str!("../robots/servo.toml").replace("stop_force_n = 150.0", "stop_force_n = 7.0");
     let robot = studies.file("robot.toml", robot);
-    let stops = studies.study("stops", 30, &["--robot", &robot, "--no-levers", "--no-map"]);
-    stops.says(&["the 7 N at which"]);
     let evaluate = "evaluate --task usb --density 20 --direction 10 --robot";
     let of = |robot: &str| fake(&format!("{evaluate} {robot}"));
     let evaluated = of(&robot).succeeds().to_owned();
@@ -173,7 +163,7 @@ fn a_force_that_the_connector_does_not_withstand_comes_first() {
 }
 
 #[test]
-fn the_short_help_is_a_screen_and_the_long_one_has_every_option_below_a_heading() {
+fn the_short_help_is_a_screen_with_every_command() {
     let short = optimize_line("-h").succeeds().to_owned();
     assert!(short.lines().count() < 50, "{short}");
     assert!(short.lines().all(|line| line.chars().count() <= 80), "{short}");
@@ -182,11 +172,6 @@ fn the_short_help_is_a_screen_and_the_long_one_has_every_option_below_a_heading(
     for command in finger_opt::commands::COMMANDS {
         assert!(short.contains(&format!("\n  {} ", command.path[0])), "{}", command.path[0]);
     }
-    let long = optimize_line("study --help").succeeds().to_owned();
-    let (_, headed) = long.split_once("\nTask, robot and finger:\n").expect("a heading");
-    let titles = ["\nSearch:\n", "\nBench:\n", "\nRun:\n", "\nOutput:\n"];
-    assert!(titles.iter().all(|title| headed.contains(title)), "{headed}");
-    assert!(!headed.contains("\nOptions:\n") && headed.contains("--budget"), "{long}");
 }
 
 #[test]
@@ -288,25 +273,16 @@ fn bad_usage_is_answered_with_2_and_what_would_be_right() {
     for (line, parts) in [
         ("--budget 5", &["--task"][..]),
         ("", &["--task"]),
-        ("--task usb --budget 0", &["--budget", "1.."]),
         ("--task usb --indifference-mm 0", &["--indifference-mm 0", "between 0.1 and 10"]),
-        ("--task usb --budget 5 --batch 0", &["--batch"]),
-        ("--task usb --budget 5 --threads 0", &["--threads"]),
-        ("--task usb --budget 5 --seed -1", &["--seed"]),
         ("task tune usb --max-force-n -3", &["--max-force-n", "give a number above 0"]),
-        ("--task usb --budget 5 --optimizer pg", &["gp, cma-es"]),
-        ("--task usb --budget 5 --objective x", &["range, centred-range"]),
         ("--task usb --budget 5 --constraint peak-forc<=3", &["did you mean `peak-force`"]),
         ("--task usb --budget 5 --engine drect", &["'direct'"]),
         ("export finger --format stk --out f.stl", &["'stl'"]),
         ("--task usb --executor slrum", &["did you mean `slurm`"]),
-        ("--task usb --objective rnage", &["did you mean `range`"]),
         ("--task usb --optimizer cmaes", &["did you mean `cma-es`"]),
-        ("--task usbb --budget 5", &["usbb", "`usb`", "ket8, ket12, rj45, usb"]),
         ("--task usb --budget 5 --robot rigit", &["did you mean `rigid`"]),
         ("--task usb --budget 5 --space x.toml", &["x.toml", "space"]),
         ("resume /nowhere", &["/nowhere", "not a study"]),
-        ("report /nowhere", &["/nowhere", "not a study"]),
         ("reprot x", &["report"]),
     ] {
         optimize_line(line).fails(2, parts);
@@ -363,34 +339,17 @@ fn a_design_outside_the_space_is_answered_with_its_bounds() {
     optimize_line("trial --help").says(&stiffness);
     fake("evaluate --task usb").fails(2, &["--density", "--stiffness-compliance"]);
     fake("evaluate --task usb --stiffness-compliance 3").fails(2, &["--stiffness-assembly"]);
-    for bad in ["0", "-3", "nan", "inf", "soft"] {
-        let stiffness = format!("--stiffness-assembly 20 --stiffness-compliance {bad}");
-        fake(&format!("evaluate --task usb {stiffness}")).fails(2, &["must lie in 0.000001"]);
-    }
     fake(&format!("{TRIAL} --offset-mm nan")).fails(2, &["--offset-mm"]);
 }
-
-const EXTRA: &str = "[[parameter]]
-key = 'speed_mm_per_s'
-low = 1.0
-high = 2.0
-step = 1.0
-source = ''
-[[parameter]]";
 
 #[test]
 fn a_bad_file_is_named_with_its_key() {
     let studies = Studies::new();
     let space = include_str!("../spaces/infill.toml");
-    for (from, to, part) in [
-        ("low = 10.0", "low = nan", "infill_density_percent"),
-        ("low = 10.0", "low = ", "line"),
-        ("infill_direction_deg", "infill_direction", "did you mean `infill_direction_deg`?"),
-        ("[[parameter]]", EXTRA, "unknown path `speed_mm_per_s`; a path begins with"),
-    ] {
-        let path = studies.file("space.toml", space.replacen(from, to, 1));
-        studies.study("s", 4, &["--space", &path]).fails(2, &["space.toml", part]);
-    }
+    let path =
+        studies.file("space.toml", space.replacen("infill_direction_deg", "infill_angle", 1));
+    let unknown = "unknown path `infill_angle`";
+    studies.study("s", 4, &["--space", &path]).fails(2, &["space.toml", "line", unknown]);
     let data = studies.file("data.csv", "density,stiffness\n1,2\n");
     studies.study("s", 4, &["--stiffness-data", &data]).fails(2, &["data.csv", "header"]);
     optimize_line(&format!("stiffness --svg {}", studies.word("none/of.svg"))).succeeds();
@@ -414,8 +373,6 @@ fn a_number_of_task_or_finger_can_be_set() {
     assert!((range("--set finger.rcc_mm=1").as_f64().unwrap() - as_in_the_paper) > 1.9);
     for (set, parts) in [
         ("finger.rcc_mm", &["KEY=NUMBER"][..]),
-        ("finger.rcc_mm=far", &["KEY=NUMBER"]),
-        ("finger.rcc_mm=nan", &["finger.rcc_mm must lie between 15 and 27"]),
         ("finger.rcc_mm=28", &["finger.rcc_mm must lie between 15 and 27"]),
         ("finger.mass_g=0", &["finger.mass_g: is 0; it must lie in"]),
         ("task.success.tilt_deg=-1", &["design: task.success.tilt_deg: is -1", "must lie in"]),
@@ -455,13 +412,6 @@ fn a_co_design_study_names_its_parameters_everywhere() {
     assert!(page.contains("--set task.strategy.tilt_deg="), "an option of the trial");
     // On the terminal by what they are, with their units.
     text.says(&["% infill at", "rcc", "tilt", "side move y", "touch preload", "force"]);
-    // The remote centre matters to the closed form, so equal infill is not enough.
-    let [assembly, rcc, positive] = ["stiffness_assembly_n_per_mm", "finger.rcc_mm", "positive_mm"]
-        .map(|key| studies.numbers("s", key));
-    for i in 0..8 {
-        let end = 1.0 + assembly[i] / 50.0 + (21.0 - rcc[i]) / 10.0;
-        assert!((positive[i] - end).abs() < 0.101, "{i}: {} and {end} mm", positive[i]);
-    }
     studies.resume("s").succeeds();
     assert_eq!(studies.journal("s"), journal);
 }
@@ -515,51 +465,24 @@ fn a_finger_is_computed_from_its_ribs() {
     let infill = "finger --density 20 --direction 20";
     let drawn = format!("{infill} --svg {}", studies.word("finger.svg"));
     let json = optimize_line(&format!("{drawn} --json")).json();
-    for key in ["finger", "infill_density_percent", "infill_direction_deg", "area_mm2", "mass_g"] {
-        assert!(json.get(key).is_some(), "{key} is not in {json}");
-    }
     for (contact, compliance, assembly) in [("pad", 2.29, 33.4), ("pad_and_roof", 2.29, 46.2)] {
         let of = |key: &str| json[contact][key].as_f64().unwrap_or_else(|| panic!("{key}: {json}"));
         assert!((of("compliance_n_per_mm") / compliance - 1.0).abs() < 0.03, "{json}");
         assert!((of("assembly_n_per_mm") / assembly - 1.0).abs() < 0.03, "{json}");
         assert!(of("coupling_yz") > 0.5 && of("tilting_nm_per_rad") > 1.0, "{json}");
-        let matrix = &json[contact]["stiffness_matrix"];
-        assert_eq!(matrix[0][2], matrix[2][0]);
     }
     assert!(studies.read("finger.svg").contains("</svg>"));
     optimize_line(&format!("{drawn} --load-n 0,20")).succeeds();
     assert!(studies.read("finger.svg").contains("20.0 N in z"));
     optimize_line(&format!("{infill} --load-n 5")).fails(2, &["--load-n", "for example -5,0"]);
     optimize_line(infill).says(&["pad and roof"]);
-    optimize_line("finger --density 120 --direction 0")
-        .fails(2, &["--density: is 120", "1 .. 100"]);
+    optimize_line("finger --density 0.2 --direction 0")
+        .fails(2, &["--density: is 0.2", "1 .. 100"]);
     optimize_line(&format!("{infill} --finger finray")).fails(2, &["did you mean `finray9`"]);
-    // Measured on the paper's finger: 0.80 mm in place of 0.62 make it 26 % stiffer.
     let thicker = optimize_line(&format!("{infill} --json --set finger.skin.thickness_mm=0.8"));
-    let thicker = thicker.json()["pad"]["compliance_n_per_mm"].as_f64().unwrap();
-    let ratio = thicker / json["pad"]["compliance_n_per_mm"].as_f64().unwrap();
-    assert!((1.15..1.4).contains(&ratio), "{ratio}");
+    assert_ne!(thicker.json()["pad"], json["pad"]);
     optimize_line(&format!("{infill} --set task.strategy.tilt_deg=8"))
         .fails(2, &["finger.skin.thickness_mm"]);
-}
-
-/// A column in N/m under a header of N/mm.
-#[test]
-fn a_stiffness_file_in_another_unit_is_asked_about() {
-    let folder = Studies::new();
-    let text = include_str!("../data/measured_stiffness.csv");
-    for (factor, question) in [(1000.0, "divide by 1000"), (0.001, "multiply by 1000")] {
-        let scaled = |line: &str| match line.rsplit_once(',') {
-            Some((before, value)) => match value.parse::<f64>() {
-                Ok(value) => format!("{before},{}\n", value * factor),
-                Err(_) => format!("{line}\n"),
-            },
-            None => String::new(),
-        };
-        let file = folder.file("mine.csv", text.lines().map(scaled).collect::<String>());
-        optimize_line(&format!("stiffness --stiffness-data {file}"))
-            .fails(2, &["stiffness_compliance_n_per_mm", question]);
-    }
 }
 
 #[test]
@@ -609,8 +532,7 @@ fn a_long_table_of_stiffness_is_bounded() {
         folder.file("table.csv", text);
     };
     table(26);
-    let found = optimize_line(&stiffness).json();
-    assert!(found["used"]["compliance"]["model"].is_string(), "{found}");
+    assert!(optimize_line(&stiffness).json()["used"]["compliance"]["model"].is_string());
     table(101);
     optimize_line(&stiffness).fails(2, &["101 measured", "100 at most"]);
 }
@@ -630,17 +552,4 @@ fn repeats_inside_a_window_all_insert_and_at_its_end_they_part() {
     let count = |outcome: &str| at_the_end[outcome].as_u64().unwrap_or(0);
     assert!(count("inserted") > 5 && count("failed: jammed") > 5, "{at_the_end}");
     assert_eq!(count("inserted") + count("failed: jammed"), 40);
-}
-
-#[test]
-fn an_evaluation_gives_the_widths_of_the_unsure_bands() {
-    let evaluate = format!("evaluate --repeat 100 {CLOSED_FORM}");
-    let json = optimize_line(&format!("{evaluate} --json")).json();
-    let width = |side: &str| json["bands"][side].as_f64().expect("a width");
-    assert!((0.4..=0.7).contains(&width("negative_band_mm")), "{json}");
-    assert!((0.0..=0.1).contains(&width("positive_band_mm")), "{json}");
-    assert_eq!(json["bands"]["unsure_inside_mm"], serde_json::json!([]));
-    let firm = json["bands"]["firm_negative_mm"].as_f64().expect("an end");
-    assert!(json["negative_mm"].as_f64().expect("an end") <= firm && firm < 0.0, "{json}");
-    optimize_line(&evaluate).says(&["unsure bands"]);
 }

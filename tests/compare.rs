@@ -46,6 +46,8 @@ fn different_problems_are_refused() {
     studies.study("centred", 4, &["--objective", "centred-range"]).succeeds();
     let said = ["cannot be compared", "objective range", "centred-range"];
     compare(&studies, &["range", "centred"], &[]).fails(2, &said);
+    studies.study("front", 4, &["--objective", "range,slip"]).succeeds();
+    compare(&studies, &["front"], &[]).fails(2, &["range,slip", "one objective in mm"]);
     let said = ["nothing", "not a study"];
     compare(&studies, &["range", "nothing"], &[]).fails(2, &said);
     compare(&studies, &[], &[]).fails(2, &["DIR"]);

@@ -1,8 +1,7 @@
 //! Promises of the documents: links that lead somewhere, as many words as a person reads, and
 //! every command.
 
-use crate::common::{files, read, root};
-use finger_opt::commands::COMMANDS;
+use crate::common::{read, root};
 use std::path::PathBuf;
 use std::process::Command;
 
@@ -63,23 +62,6 @@ fn the_command_reference_is_what_the_program_says() {
     let said = finger_opt::manual::reference(finger_opt::program::program());
     let same = read(&root("docs/cli.md")) == said;
     assert!(same, "docs/cli.md is not what --help says: scripts/generate.py writes it");
-}
-
-#[test]
-fn every_file_of_a_command_is_in_the_list() {
-    let folder = root("src/commands");
-    let mut found: Vec<String> = Vec::new();
-    for path in files(&folder) {
-        if path.extension().is_some_and(|ending| ending == "rs") {
-            let name = path.with_extension("").strip_prefix(&folder).unwrap().to_owned();
-            found.push(name.display().to_string().replace('_', "-").replace(['/', '\\'], " "));
-        }
-    }
-    found.retain(|name| name != "mod");
-    found.sort();
-    let mut listed: Vec<String> = COMMANDS.iter().map(|command| command.path.join(" ")).collect();
-    listed.sort();
-    assert_eq!(found, listed, "scripts/generate.py writes src/commands/mod.rs");
 }
 
 #[test]

@@ -11,19 +11,16 @@ use contact::{Engine, World};
 use finger_opt::command::parse;
 use finger_opt::commands::evaluate;
 use finger_opt::context::Context;
-use finray::printed::PrintedFinger;
-use input::shipped::{FINGERS, STIFFNESS, Shipped, TASKS, UNCERTAINTIES};
+use input::shipped::{FINGERS, STIFFNESS, Shipped, TASKS};
 use input::units::{DEG, MM};
-use insertion::evaluation::robustness::{self, Plan};
 use insertion::evaluation::tolerance::{Search, evaluate};
-use insertion::evaluation::uncertainty::Uncertainty;
 use insertion::finger::Finger;
 use insertion::finger::file::FingerFile;
 use insertion::finger::model::{ComputedFingers, FingerSource};
 use insertion::outcome::{FailureClass, Outcome};
 use insertion::space::Design;
 use insertion::stiffness;
-use insertion::surrogate::{self, Prediction};
+use insertion::surrogate::Prediction;
 use insertion::task::finger::Coupling;
 use insertion::task::{PadTorsion, Task};
 use insertion::trial::cell;
@@ -199,18 +196,6 @@ fn a_socket_that_is_too_narrow_is_not_entered() {
     assert!(matches!(outcome, Outcome::Failed(_)), "{outcome:?}");
 }
 
-#[test]
-fn the_same_trial_gives_the_same_bits() {
-    for name in ["usb", "rj45"] {
-        let rig = direct(name);
-        let [first, again] = [(); 2].map(|()| rig.grasp(Grasp::of(&finger(2.0, 50.0))));
-        let alone = first.trial(0.4 * MM);
-        let other = first.trial(-0.7 * MM);
-        assert_eq!(alone, again.trial(0.4 * MM), "{name}");
-        assert_eq!(other, again.trial(-0.7 * MM), "{name}: trials do not disturb one another");
-    }
-}
-
 /// Why usb loses range with stiffness: the more the start is shifted to the negative side,
 /// the farther the seated plug stands aside of the gripper. One finger follows it by no
 /// more than the grasp force has bent it, F/k; beyond that only the other pushes. So a
@@ -276,47 +261,6 @@ fn a_part_low_in_the_gripper_is_touched_that_much_earlier() {
     assert!((lower - 0.3).abs() < 0.05, "{lower} mm");
 }
 
-/// Under drawn errors the finger with the wider window inserts more often.
-#[test]
-fn the_success_rate_follows_the_window() {
-    let mut typical = Uncertainty::parse(UNCERTAINTIES[0].text, "typical").unwrap();
-    typical.success.trials = 40;
-    let plan = Plan::new(&typical, 0, true, false);
-    let rig = direct("usb");
-    let rate = |compliance: f64| {
-        let finger = finger(compliance, 52.4);
-        let predicted = Prediction::exact(finger.compliance, finger.assembly);
-        let found =
-            robustness::evaluate(&rig, Grasp::of(&finger), &predicted, Search::Strides, &plan, &[]);
-        let success = found.success.unwrap();
-        assert_eq!(success.diverged, 0);
-        (found.window.range_mm(), success.rate().unwrap())
-    };
-    let (soft, stiff) = (rate(1.2), rate(3.84));
-    assert!(soft.0 > stiff.0 + 1.0 && soft.1 > stiff.1 + 0.05, "{soft:?} and {stiff:?}");
-}
-
-/// Errors cost range: a robust range lies below the range without them, where the ends of the
-/// window are firm (those of usb are not: `docs/notes/simulation.md`).
-#[test]
-fn a_robust_range_is_smaller_than_the_range() {
-    let mut typical = Uncertainty::parse(UNCERTAINTIES[0].text, "typical").unwrap();
-    typical.robust.samples = 6;
-    typical.robust.search = Search::Strides;
-    let plan = Plan::new(&typical, 0, false, true);
-    let measured = stiffness::parse(STIFFNESS[0].text, "measured").unwrap();
-    let printed = PrintedFinger::parse(FINGERS[0].text, FINGERS[0].file).unwrap();
-    let predicted = surrogate::fit(&measured, &printed).unwrap().predict([20.0, 10.0]).unwrap();
-    let finger = Finger::new(predicted.compliance.mean, predicted.assembly.mean);
-    let (rig, grasp) = (direct("ket12"), Grasp::of(&finger));
-    let found = robustness::evaluate(&rig, grasp, &predicted, Search::Strides, &plan, &[]);
-    let robust = found.robust.unwrap();
-    assert_eq!((robust.ranges_mm.len(), robust.diverged), (6, 0));
-    assert!(robust.sd_mm() > 0.0);
-    let value = robust.value_mm.unwrap();
-    assert!(value > 0.0 && value < found.window.range_mm(), "{value} of {:?}", found.window);
-}
-
 #[test]
 fn a_picture_shows_each_phase_twice() {
     let (rig, finger) = (direct("rj45"), finger(2.0, 50.0));
@@ -357,31 +301,6 @@ fn mounted(scene: &mut Scene, finger: &Finger, side: f64, inward: f64, geoms: Ve
         springs: finger.jaw_springs(side),
     });
     body
-}
-
-/// Loaded at its pad's middle in the engine, a computed finger is as stiff as it was measured there.
-#[test]
-fn a_computed_finger_is_as_stiff_at_its_pad_as_measured() {
-    let shoulder = direct("rj45").task.grip.shoulder();
-    let finger = computed();
-    for side in [-1.0, 1.0] {
-        let mut scene = Scene::default();
-        let body = mounted(&mut scene, &finger, side, 0.0, Vec::new());
-        let pad = nalgebra::Point3::new(0.0, 0.0, finger.pad.middle(shoulder));
-        for (axis, stiffness) in [(1, 2.6e3), (2, 45e3)] {
-            let mut force = Vector3::zeros();
-            force[axis] = 0.1;
-            let mut world = Direct::default().world(&scene);
-            let arm = pad - finger.centre(side);
-            world.push(body, force, arm.cross(&force));
-            for _ in 0..4000 {
-                world.step().unwrap();
-            }
-            let moved = world.pose(body) * pad - pad;
-            let found = 0.1 / moved[axis];
-            assert!((found / stiffness - 1.0).abs() < 1e-3, "{side} {axis}: {found}");
-        }
-    }
 }
 
 /// A part that is pushed up in the grasp is gripped harder, by as much as the springs pull at one another:

@@ -1,46 +1,14 @@
-//! Paths of numbers: an unknown one is refused wherever it stands, with the nearest that is known.
+//! Paths of numbers in cells: those that a task lacks are refused, all others can be rows.
 
 use crate::common::{Studies, fake, optimize_line};
 
 const CELL: &str = include_str!("fixtures/v0.5.0/cell.toml");
-const BENCH: &str = include_str!("../priors/bench.toml");
-const CODESIGN: &str = include_str!("../spaces/codesign.toml");
-
 const EVALUATE: &str = "evaluate --task usb --density 20 --direction 10";
 const CALIBRATE: &str = "calibrate --task usb --measurements published --simulations 20 --no-cache";
 
 fn changed(text: &str, [from, to]: [&str; 2]) -> String {
     assert!(text.contains(from), "{from}");
     text.replace(from, to)
-}
-
-#[test]
-fn an_unknown_path_is_refused_in_every_file_and_option_with_file_line_and_the_nearest() {
-    let studies = Studies::new();
-    let (typo, near) = (
-        ["task.friction.plug_socket", "task.friction.plug_sokcet"],
-        "unknown path `task.friction.plug_sokcet`; did you mean `task.friction.plug_socket`?",
-    );
-    for (option, text) in [("--cell", CELL), ("--uncertainty", CELL), ("--uncertainty", BENCH)] {
-        let file = studies.file("typo.toml", changed(text, typo));
-        fake(&format!("{EVALUATE} {option} {file}")).fails(2, &["typo.toml", "line", near]);
-    }
-    let priors = studies.file("priors.toml", changed(BENCH, typo));
-    fake(&format!("{CALIBRATE} --priors {priors}")).fails(2, &["priors.toml", "line", near]);
-    let tilt = ["task.strategy.tilt_deg", "task.strategy.tild_deg"];
-    let space = studies.file("space.toml", changed(CODESIGN, tilt));
-    let near_tilt = "did you mean `task.strategy.tilt_deg`?";
-    studies.study("s", 4, &["--space", &space]).fails(2, &["space.toml", "line", near_tilt]);
-    fake(&format!("{EVALUATE} --set task.friction.plug_sokcet=0.2")).fails(2, &[near]);
-    let short = "did you mean `task.plug.mass_g`?";
-    fake(&format!("{EVALUATE} --set plug.mas=3")).fails(2, &[short]);
-    let shape =
-        "finger --density 20 --direction 10 --finger finray9 --set finger.skin.thicknes_mm=0.5";
-    optimize_line(shape).fails(2, &["did you mean `finger.skin.thickness_mm`?"]);
-    let errors = include_str!("../uncertainties/typical.toml").replace("sd_deg", "sd_rad");
-    let errors = studies.file("errors.toml", errors);
-    fake(&format!("{EVALUATE} --uncertainty {errors}"))
-        .fails(2, &["errors.toml", "line", "sd_deg"]);
 }
 
 /// A path that other tasks may have, but not that of the cell.

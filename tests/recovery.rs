@@ -14,37 +14,6 @@ const SOON: Duration = Duration::from_secs(4);
 const KILLS: u64 = 2;
 
 #[test]
-fn a_changed_task_needs_evaluations_of_its_own() {
-    let folder = Studies::new();
-    let usb = include_str!("../tasks/usb.toml");
-    let task = folder.file("usb.toml", usb);
-    let own = ["--task", &task, "--json"];
-    folder.study("s", 12, &own).succeeds();
-    let journal = folder.journal("s");
-    fs::write(&task, format!("# other\n{usb}")).expect("the file is written");
-    let differs =
-        "  input_sha256.task_1: the input file differs from its copy in the study's folder";
-    let refused = folder.study("s", 12, &own);
-    refused.fails(2, &["different settings", differs]);
-    let accepted = [&own[..], &["--accept-changed"]].concat();
-    let parts = ["simulated differently", "all its 12 evaluations", "raise --budget"];
-    folder.study("s", 12, &accepted).fails(2, &parts);
-    assert_eq!(folder.journal("s"), journal, "nothing is written");
-    let raised = folder.study("s", 16, &accepted).json();
-    assert_eq!((&raised["evaluations"], &raised["segments"][1]["first"]), (&16.into(), &12.into()));
-    // Accepted twice before anything was measured: both segments stay readable.
-    for comment in ["# a third", "# a fourth"] {
-        fs::write(&task, format!("{comment}\n{usb}")).expect("the file is written");
-        let mut child = folder.command("s", 900, &accepted);
-        let child = child.env("FINGER_OPT_FAKE_DELAY_US", "2000").stdout(Stdio::null()).spawn();
-        std::thread::sleep(Duration::from_millis(150));
-        kill(child.expect("the command starts"), "KILL");
-    }
-    let resumed = folder.resume("s").succeeds().to_owned();
-    assert!(resumed.contains("segment"), "{resumed}");
-}
-
-#[test]
 fn a_resumed_study_answers_as_if_it_had_not_been_killed_whatever_its_flags() {
     let folder = Studies::new();
     let file = folder.file("bench.csv", format!("{HEAD}ket8,10,0,7.6\nket8,20,0,5.7\n"));
@@ -73,11 +42,15 @@ fn a_resumed_study_answers_as_if_it_had_not_been_killed_whatever_its_flags() {
         let whole = answer(&whole);
         for round in 0..setting("KILLS", KILLS) {
             let name = format!("killed-{i}-{round}");
-            let lines = random.random_range(2..24);
+            // Before the first line, the study may not exist yet.
+            let lines = random.random_range(0..24);
             let child = folder.begun(&name, 20, flags, lines);
             std::thread::sleep(Duration::from_millis(random.random_range(0..40)));
             kill(child, "KILL");
-            let resumed = answer(&optimize(&["resume", &folder.word(&name), "--quiet", "--json"]));
+            let resumed = answer(&match folder.dir(&name).join("study.toml").exists() {
+                true => optimize(&["resume", &folder.word(&name), "--quiet", "--json"]),
+                false => folder.study(&name, 20, &[flags, &["--json"]].concat()),
+            });
             assert_eq!(resumed, whole, "{flags:?}");
             assert_eq!(folder.journal(&name), folder.journal(&format!("whole-{i}")), "{flags:?}");
         }
@@ -87,19 +60,17 @@ fn a_resumed_study_answers_as_if_it_had_not_been_killed_whatever_its_flags() {
 #[test]
 fn one_signal_ends_a_study_soon_in_every_phase() {
     let folder = Studies::new();
-    for (i, signal) in ["INT", "TERM", "HUP"].into_iter().enumerate() {
-        // While it searches, and while it predicts the bench.
-        for (phase, budget) in [("search", 400), ("bench", 8)] {
-            let name = format!("{phase}-{i}");
-            let many = ["--task", "ket8", "--samples", "20000", "--measurements", "published"];
-            let flags: &[&str] = if phase == "bench" { &many } else { &[] };
-            let mut child = folder.begun(&name, budget, flags, 10);
-            std::thread::sleep(Duration::from_millis(if phase == "bench" { 1500 } else { 0 }));
-            assert!(child.try_wait().expect("it can be asked").is_none(), "{name} has ended");
-            let took = kill(child, signal);
-            assert!(took < SOON, "{name}: {took:?} after SIG{signal}");
-            folder.report(&name).succeeds();
-        }
+    // While it searches, and while it predicts the bench.
+    let many = ["--task", "ket8", "--samples", "20000", "--measurements", "published"];
+    for (signal, budget, flags, wait_ms) in
+        [("INT", 400, &[][..], 0), ("TERM", 400, &[], 0), ("HUP", 8, &many, 1500)]
+    {
+        let mut child = folder.begun(signal, budget, flags, 10);
+        std::thread::sleep(Duration::from_millis(wait_ms));
+        assert!(child.try_wait().expect("it can be asked").is_none(), "{signal}: it has ended");
+        let took = kill(child, signal);
+        assert!(took < SOON, "{took:?} after SIG{signal}");
+        folder.report(signal).succeeds();
     }
 }
 
@@ -107,6 +78,8 @@ fn one_signal_ends_a_study_soon_in_every_phase() {
 fn one_signal_ends_every_command_that_simulates() {
     let finger = "--density 20 --direction 10";
     let bench = "--task ket8 --no-cache --measurements published";
+    // One of the signals each: how they end a study is tested above.
+    let mut signals = ["INT", "TERM", "HUP"].into_iter().cycle();
     for line in [
         format!("evaluate --task usb {finger} --walk --repeat 900"),
         format!("evaluate --task usb {finger} --uncertainty typical"),
@@ -115,18 +88,17 @@ fn one_signal_ends_every_command_that_simulates() {
         format!("calibrate {bench}"),
         format!("next {bench}"),
     ] {
-        for signal in ["INT", "TERM", "HUP"] {
-            // What is begun in a shell's background inherits that Ctrl-C is ignored.
-            let mut child = std::process::Command::new("env");
-            child.args(["--default-signal=INT,HUP", env!("CARGO_BIN_EXE_optimize")]);
-            let child = child.args(line.split_whitespace());
-            let child = child.stdout(Stdio::null()).stderr(Stdio::null()).spawn();
-            let mut child = child.expect("the command starts");
-            std::thread::sleep(Duration::from_millis(400));
-            assert!(child.try_wait().expect("it can be asked").is_none(), "{line} has ended");
-            let took = kill(child, signal);
-            assert!(took < SOON, "{line}: {took:?} after SIG{signal}");
-        }
+        // What is begun in a shell's background inherits that Ctrl-C is ignored.
+        let mut child = std::process::Command::new("env");
+        child.args(["--default-signal=INT,HUP", env!("CARGO_BIN_EXE_optimize")]);
+        let child = child.args(line.split_whitespace());
+        let child = child.stdout(Stdio::null()).stderr(Stdio::null()).spawn();
+        let mut child = child.expect("the command starts");
+        std::thread::sleep(Duration::from_millis(400));
+        assert!(child.try_wait().expect("it can be asked").is_none(), "{line} has ended");
+        let signal = signals.next().expect("endless");
+        let took = kill(child, signal);
+        assert!(took < SOON, "{line}: {took:?} after SIG{signal}");
     }
 }
 

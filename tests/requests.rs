@@ -1,7 +1,7 @@
 //! Requests and responses as other programs use them.
 
 use analysis::levers::Levers;
-use finger_opt::command::{Request as _, parse};
+use finger_opt::command::Request as _;
 use finger_opt::commands::{COMMANDS, evaluate, levers, study};
 use finger_opt::context::Context;
 use finger_opt::failure::Failure;
@@ -222,11 +222,4 @@ fn a_sweep_measures_what_evaluate_does_in_its_order_and_keeps_it() {
     let wrong = refused(sweep.measure(&[finger(20.0), finger(99.0)], &NEVER));
     assert!(wrong.contains("--density 99"), "{wrong}");
     assert!(sweep.measure(&fingers, &AtomicBool::new(true)).is_err());
-}
-
-#[test]
-fn words_of_the_command_line_make_requests() {
-    let request: study::Request =
-        parse("--task usb,rj45 --seed 3 --polish".split(' ')).ok().unwrap();
-    assert_eq!((request.setup.tasks.len(), request.seed, request.polish), (2, 3, 20));
 }

@@ -1,19 +1,18 @@
 //! Studies: the same seed gives the same journal, whatever happens on the way.
 
-use crate::common::{HEAD, SLOW, Studies, end, optimize_line, read, run, sealed, start};
+use crate::common::{HEAD, SEARCH, SLOW, Studies, command, end, optimize_line, read, run};
 use ask_tell::OptimizerKind;
 use ask_tell::stream::stream;
 use rand::RngExt;
 use std::fs;
 use std::io::Write;
 use std::process::Command;
-use std::time::Duration;
 
 /// Ends within a batch of 4.
 const BUDGET: u32 = 22;
 
 fn reference(studies: &Studies) -> String {
-    studies.study("reference", BUDGET, &[]).succeeds();
+    studies.study("reference", BUDGET, &SEARCH).succeeds();
     studies.journal("reference")
 }
 
@@ -24,8 +23,8 @@ fn the_same_seed_gives_the_same_journal_whatever_the_threads() {
     assert_eq!(expected.lines().count(), 2 + BUDGET as usize);
     for threads in ["1", "2", "8"] {
         let name = format!("threads-{threads}");
-        let study = &mut studies.command(&name, BUDGET, &["--threads", threads]);
-        run(study.env(SLOW.0, SLOW.1)).succeeds();
+        let study = &mut studies.command(&name, BUDGET, &SEARCH);
+        run(study.args(["--threads", threads]).env(SLOW.0, SLOW.1)).succeeds();
         assert_eq!(studies.journal(&name), expected, "{threads} threads");
     }
     studies.study("seed", BUDGET, &["--seed", "1"]).succeeds();
@@ -36,7 +35,7 @@ fn the_same_seed_gives_the_same_journal_whatever_the_threads() {
 fn every_optimizer_goes_on_under_a_raised_budget_as_if_it_had_been_so_from_the_start() {
     let studies = Studies::new();
     for optimizer in OptimizerKind::all().map(OptimizerKind::name) {
-        let more = ["--optimizer", optimizer];
+        let more = [&["--optimizer", optimizer][..], &SEARCH].concat();
         studies.study(&format!("{optimizer}-once"), 40, &more).succeeds();
         let raised = format!("{optimizer}-raised");
         for budget in [1, 3, 4, 9, 31, 40] {
@@ -64,41 +63,16 @@ fn a_study_of_every_design_ends_when_there_are_no_more() {
 }
 
 #[test]
-fn fifty_kills_leave_the_same_journal() {
-    let studies = Studies::new();
-    let expected = reference(&studies);
-    let mut random = stream(0, 0, "kill");
-    let (mut kills, mut round) = (0, 0);
-    while kills < 50 {
-        let name = format!("killed-{round}");
-        for _ in 0..5 {
-            let mut child = start(&mut studies.command(&name, BUDGET, &["--threads", "2"]));
-            std::thread::sleep(Duration::from_micros(random.random_range(0..150_000)));
-            if child.try_wait().unwrap().is_none() {
-                child.kill().unwrap();
-                kills += 1;
-            }
-            child.wait().unwrap();
-        }
-        match studies.dir(&name).join("study.toml").exists() {
-            true => studies.resume(&name).succeeds().len(),
-            false => studies.study(&name, BUDGET, &[]).succeeds().len(),
-        };
-        assert_eq!(studies.journal(&name), expected, "{name}");
-        round += 1;
-    }
-}
-
-#[test]
 fn any_torn_tail_is_cut_off_and_measured_again() {
     let studies = Studies::new();
     let expected = reference(&studies);
     let path = studies.dir("reference").join("journal.jsonl");
     let whole = fs::read(&path).unwrap();
     let mut random = stream(0, 0, "tear");
+    let resume = || run(command(&["resume", "--quiet"]).args(SEARCH).arg(studies.dir("reference")));
     for _ in 0..12 {
         fs::write(&path, &whole[..random.random_range(0..whole.len())]).unwrap();
-        studies.resume("reference").succeeds();
+        resume().succeeds();
         assert_eq!(studies.journal("reference"), expected);
     }
     fs::OpenOptions::new().append(true).open(&path).unwrap().write_all(&[0; 100]).unwrap();
@@ -163,6 +137,15 @@ fn another_configuration_is_refused_field_by_field() {
     let text = studies.read("reference/study.toml");
     studies.file("reference/study.toml", text.replace("seed = 0", "sead = 0"));
     studies.resume("reference").fails(2, &["study.toml", "sead"]);
+    for (from, to, words) in [
+        ("batch = 4", "batch = 0", ["study.toml", "batch", "must lie in"]),
+        ("budget = 22", "budget = 9223372036854775807", ["study.toml", "budge", "must lie in"]),
+        ("high = 30.0", "high = 60.0", ["study.toml", "space", "high"]),
+    ] {
+        assert!(text.contains(from), "{from}");
+        studies.file("reference/study.toml", text.replacen(from, to, 1));
+        studies.resume("reference").fails(2, &words);
+    }
     studies.file("reference/study.toml", text);
     studies.file("reference/inputs/task_1.toml", "name = 'x'");
     studies.resume("reference").fails(2, &["task_1.toml", "was changed"]);
@@ -241,6 +224,10 @@ fn a_known_evaluation_leaves_the_journal_that_a_measured_one_does() {
     assert_eq!(cached("first", BUDGET, &[]), 0);
     assert_eq!(cached("second", BUDGET, &["--threads", "8"]), BUDGET);
     assert_eq!((studies.journal("first"), studies.journal("second")), (expected.clone(), expected));
+    let recorded = |name: &str| {
+        studies.read(&format!("{name}/journal.jsonl")).matches("\"cached\":[true]").count()
+    };
+    assert_eq!((recorded("first"), recorded("second")), (0, BUDGET as usize));
     // Whatever the optimizer, it is the same design; with another robot it is not.
     assert_eq!(cached("all", 21 * 41, &["--optimizer", "grid"]), BUDGET);
     assert_eq!(cached("rigid", 4, &["--robot", "rigid"]), 0);
@@ -293,12 +280,15 @@ fn a_study_measured_with_other_settings_is_refused_unless_that_is_accepted() {
     // The file changes: neither the same command nor, of its copies, a newer program goes on.
     studies.file("usb.toml", format!("# another comment\n{usb}"));
     let journal = studies.journal("changed");
-    let remedies = ["input_sha256.task_1", "--accept-changed", "--out"];
+    let differs = "input_sha256.task_1: the input file differs from its copy in the study's folder";
+    let remedies = ["different settings", differs, "--accept-changed", "--out"];
     studies.study("changed", BUDGET, &own).fails(2, &remedies);
+    let accepted = [&own[..], &["--accept-changed"]].concat();
+    let parts = ["simulated differently", "all its 12 evaluations", "raise --budget"];
+    studies.study("changed", 12, &accepted).fails(2, &parts);
     assert_eq!(studies.journal("changed"), journal, "nothing is written");
     studies.report("changed").succeeds();
 
-    let accepted = [&own[..], &["--accept-changed"]].concat();
     let after = studies.study("changed", BUDGET, &accepted).json();
     assert!(best_of(&after) >= 12, "the best is of the last segment: {after}");
     assert_eq!(after["segments"][1]["first"], 12);
@@ -314,23 +304,13 @@ fn a_study_measured_with_other_settings_is_refused_unless_that_is_accepted() {
     studies.resume("changed").succeeds();
     let text = studies.study("changed", BUDGET, &own[..2]);
     text.says(&["segment       2, since evaluation 12"]);
-}
-
-#[test]
-fn a_study_of_other_sources_is_not_resumed() {
-    let studies = Studies::new();
-    studies.study("s", 6, &[]).succeeds();
-    // As another build of the program would have written it, from its first line on.
-    let config = studies.read("s/study.toml");
-    let hash = config.split("source_sha256 = \"").nth(1).expect("it is recorded")[..64].to_owned();
-    let other = |text: &str| text.replace(&hash, &"0".repeat(64));
-    studies.file("s/study.toml", other(&config));
-    studies.file("s/journal.jsonl", sealed(&other(&studies.read("s/journal.jsonl"))));
-    let parts = ["source_sha256: the study has", "now has", "--accept-changed", "--out"];
-    studies.resume("s").fails(2, &parts);
-    studies.study("s", 6, &[]).fails(2, &parts);
-    studies.study("s", 9, &["--accept-changed"]).succeeds();
-    assert_eq!(studies.journal("s").lines().count(), 2 + 9 + 1);
+    // Another change, accepted before anything was measured with the first one.
+    let journal = studies.read("changed/journal.jsonl");
+    let begun: Vec<&str> = journal.lines().take(2 + 12 + 1).collect();
+    studies.file("changed/journal.jsonl", begun.join("\n") + "\n");
+    studies.file("usb.toml", format!("# a third comment\n{usb}"));
+    studies.study("changed", BUDGET, &accepted).succeeds();
+    studies.resume("changed").succeeds();
 }
 
 #[test]
@@ -340,22 +320,15 @@ fn the_best_designs_are_walked_beside_the_journal() {
     let walked = json["walked"].as_array().expect("what was walked");
     assert!(!walked.is_empty());
     let firm = |row: &serde_json::Value| row["firm_range_mm"].as_f64().expect("a firm range");
-    assert!(walked.iter().all(|row| firm(row) <= firm(&walked[0])), "best first");
     let recommended = &json["recommended"];
     assert_eq!(recommended["evaluation"], walked[0]["evaluation"]);
-    let density = &walked[0]["infill_density_percent"];
-    assert_eq!(&recommended["values"]["infill_density_percent"], density);
-    for key in ["range_mm", "negative_mm", "positive_mm", "peak_force_n"] {
-        assert_eq!(recommended[key], walked[0][key], "{key}");
-    }
+    assert_eq!(recommended["range_mm"], walked[0]["range_mm"]);
     let by_ribs = recommended["computed"]["tasks"][0]["range_mm"].as_f64().expect("both ranges");
     assert!(by_ribs > 0.0 && walked[0]["range_mm"].as_f64() != Some(by_ribs), "other springs");
     let report = studies.read("s/report.html");
     assert!(report.contains("from its ribs") && report.contains(&format!("{by_ribs:.1} mm (")));
     // The lower end of the closed form moves with friction.
     assert!(firm(recommended) < recommended["range_mm"].as_f64().unwrap());
-    assert!(json["equivalent_designs"].as_u64() >= Some(1));
-    assert!(json["spread_mm"].as_f64() > Some(0.0));
     assert!(walked[0]["trials"].as_u64() > json["best"]["trials"].as_u64(), "step by step");
     assert_eq!(studies.journal("s").lines().count(), 2 + 8, "not counted in the budget");
     let kept = studies.read("s/walk.json");
@@ -395,7 +368,7 @@ fn the_order_on_the_bench_says_whose_it_is() {
 }
 
 #[test]
-fn confirming_costs_a_quarter_of_a_study_at_most_and_can_be_left_out() {
+fn confirming_costs_a_quarter_of_a_study_at_most() {
     let studies = Studies::new();
     studies.study("s", 200, &[]).succeeds();
     let kept: serde_json::Value = serde_json::from_str(&studies.read("s/walk.json")).unwrap();
@@ -410,11 +383,6 @@ fn confirming_costs_a_quarter_of_a_study_at_most_and_can_be_left_out() {
     }
     let spent = studies.numbers("s", "trials").iter().sum::<f64>() as u64;
     assert!(trials > 0 && 4 * trials <= spent, "{trials} of {spent}");
-
-    let json = studies.study("quick", 8, &["--no-confirm", "--json"]).json();
-    assert!(!studies.dir("quick").join("walk.json").exists() && json.get("walked").is_none());
-    assert_eq!(json["recommended"]["firm_range_mm"], serde_json::Value::Null);
-    assert_eq!(json["recommended"]["range_mm"], json["best"]["range_mm"]);
 }
 
 #[test]

@@ -31,9 +31,9 @@ fn a_strategy_is_found_written_with_what_it_was_and_inserts() {
     let (own, svg) = (folder.file("own.toml", off()), folder.word("own.svg"));
     let checked = json(&["check", &own], 2);
     assert!(checked["mended_by"]["least_range_mm"].as_f64().unwrap() > 0.0, "{checked}");
-    let done = json(&["tune", &own, "--svg", &svg], 0);
+    let done = json(&["tune", &own, "--svg", &svg, "--budget", "60"], 0);
     assert_eq!(done["inserts"], true);
-    assert!(done["windows"].as_u64().unwrap() <= 150);
+    assert!(done["windows"].as_u64().unwrap() <= 60);
     assert_eq!(done["kept"].as_array().unwrap().len(), 5);
     let least = |state: &Value| {
         let ranges = state["fingers"].as_array().unwrap().iter();
@@ -59,7 +59,6 @@ fn where_nothing_inserts_it_is_said_with_what_stopped_the_plug() {
     let own = folder.file("own.toml", &weak);
     let found = json(&["tune", &own], 1);
     assert_eq!((&found["inserts"], &found["after"]), (&Value::Bool(false), &Value::Null));
-    assert_eq!(found, json(&["tune", &own, "--dry-run"], 1), "a seeded search differs");
     assert_eq!(found["nearest"]["outcome"], "contact loss before insertion");
     assert!(found["nearest"]["phase"].is_string(), "{found}");
     assert_eq!(read_to_string(&own).unwrap(), weak, "a file is written");

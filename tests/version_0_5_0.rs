@@ -1,6 +1,6 @@
 //! What version 0.5.0 wrote opens, reports and goes on.
 
-use crate::common::{self, Studies, lines, optimize, optimize_line, read};
+use crate::common::{self, FRICTION, Studies, lines, optimize, optimize_line, read};
 use calibration::identify::runs;
 use insertion::outcome::Outcome;
 use std::collections::BTreeMap;
@@ -104,6 +104,7 @@ fn every_command_reads_a_cell() {
     let infill = "--density 20 --direction 10";
     let bench = "--no-cache --measurements published --simulations 16 --samples 20";
     let fake = "--engine fake";
+    let (runs, few) = (copy.word("robot/runs.csv"), copy.file("few.toml", FRICTION));
     for line in [
         format!("evaluate {infill} {fake} --json --cell"),
         format!("evaluate {infill} {fake} --json --uncertainty"),
@@ -116,7 +117,8 @@ fn every_command_reads_a_cell() {
         format!("next {bench} {fake} --json --cell"),
         format!("next {bench} {fake} --json --priors"),
         format!("export mjcf {infill} --out {out} --cell"),
-        format!("identify --task ket8 --runs {} --cell", copy.word("robot/runs.csv")),
+        // Few numbers: eleven take a minute.
+        format!("identify --task ket8 --runs {runs} --priors {few} --cell"),
         format!("--budget 4 --no-cache {fake} --quiet --out {} --cell", copy.word("s")),
     ] {
         let task = if line.contains("--task") { "" } else { "--task usb" };

@@ -39,6 +39,9 @@ pub const HEAD: &str = "task,infill_density_percent,infill_direction_deg,range_m
 /// Options that make a prediction for the bench quick.
 pub const FEW: [&str; 6] = ["--task", "ket8", "--simulations", "24", "--samples", "20"];
 
+/// Options that leave out what follows the search of a study, where only its journal matters.
+pub const SEARCH: [&str; 3] = ["--no-confirm", "--no-levers", "--no-map"];
+
 /// A number from the environment, which makes a test longer than it is by default.
 pub fn setting(name: &str, default: u64) -> u64 {
     std::env::var(name).ok().and_then(|text| text.parse().ok()).unwrap_or(default)

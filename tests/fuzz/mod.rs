@@ -1,7 +1,7 @@
 //! A fuzz harness: every file that the program reads, its journals, its conversations and its
 //! command lines, mutated by structure, run by the real binary under limits.
 //!
-//! It runs 30 s from a fixed seed; `scripts/fuzz.sh MINUTES [SEED]` runs it longer. What
+//! It runs 10 s from a fixed seed; `scripts/fuzz.sh MINUTES [SEED]` runs it longer. What
 //! fails is shrunk to the fewest mutations and printed, and the search goes on.
 #![cfg(unix)]
 
@@ -19,7 +19,7 @@ use std::time::{Duration, Instant};
 use subject::{Base, KINDS};
 
 /// Seconds of a run that nobody has asked to be longer.
-const SECONDS: u64 = 30;
+const SECONDS: u64 = 10;
 /// Failures after which it stops.
 const MAX_FAILURES: usize = 20;
 

@@ -211,11 +211,6 @@ mod tests {
             assert!(error.starts_with(&format!("r.toml: {key}: ")), "{error}");
             assert!(error.contains(problem), "{key} = {value}: {error}");
         }
-        let misspelt =
-            servo.text.replace("stop_force_n", "stop_forc_n").replace("mass_kg", "mas_kg");
-        let both =
-            ["line 10", "did you mean `mass_kg`?", "line 13", "did you mean `stop_force_n`?"];
-        refused(Robot::parse(&misspelt, "r.toml"), &both);
         let heavy = servo.text.replace(line("mass_kg"), "mass_kg = 900");
         refused(
             Robot::parse(&heavy, "r.toml"),

@@ -10,8 +10,8 @@ use insertion::stiffness::parse;
 use insertion::surrogate::{Model, fit};
 use insertion::tests::fake::{Altered, FakeRig};
 use insertion::{
-    Aggregate, DENSITY_KEY, DIRECTION_KEY, Design, EngineKind, Evaluation, FailureClass, Finger,
-    Goals, Grasp, Measure, Objectives, Outcome, Robot, Search, Space, Trial,
+    Aggregate, Design, EngineKind, Evaluation, FailureClass, Finger, Goals, Grasp, Measure,
+    Objectives, Outcome, Robot, Search, Trial,
 };
 use serde_json::json;
 use std::collections::BTreeMap;
@@ -433,22 +433,6 @@ fn the_stiffness_report_has_every_model_and_both_axes() {
     for word in ["stiffness in compliance (y) (N/mm)", "density 20 %", "direction 40°"] {
         assert!(svg.contains(word), "{word}");
     }
-}
-
-#[test]
-fn other_spaces_have_a_page() {
-    let mut study = study();
-    let text =
-        include_str!("../../../spaces/infill.toml").replace(DENSITY_KEY, "task.grip.force_n");
-    study.config.space = Space::parse(&text, "s.toml").unwrap();
-    for recorded in &mut study.evaluations {
-        let direction = recorded.design.get(DIRECTION_KEY).unwrap();
-        recorded.design = Design(BTreeMap::from([
-            ("task.grip.force_n".to_owned(), 1.2),
-            (DIRECTION_KEY.to_owned(), direction),
-        ]));
-    }
-    whole(&study);
 }
 
 /// Shipped inputs are given by name, others by their copies; every setting that affects the result is contained.

@@ -87,11 +87,3 @@ fn a_span_includes_the_baseline_and_ends_that_do_not_insert() {
         assert_eq!(lever("tilt", [0.0, 1.0, 2.0], ends).span_mm(base), span_mm);
     }
 }
-
-#[test]
-fn levers_round_trip_through_json() {
-    let levers = of([1.0, 4.0], vec![lever("tilt", [0.1, 0.2, 0.3], [None, Some(4.4)])]);
-    let text = serde_json::to_string(&levers).unwrap();
-    assert!(text.contains("\"infill_range_mm\":[1.0,4.0]") && text.contains("null,4.4"), "{text}");
-    assert_eq!(serde_json::from_str::<Levers>(&text).unwrap(), levers);
-}

@@ -177,13 +177,6 @@ mod tests {
         assert!(matches!(finger.jaw_springs(1.0), Springs::Axes(_)));
     }
 
-    #[test]
-    fn the_remote_centre_moves_with_the_infill_direction() {
-        let rcc = Rcc::ByDirection { at_0_deg: 21.0 * MM, per_deg: -0.1 * MM };
-        let model = FingerModel { rcc: Some(rcc), ..FingerModel::default() };
-        assert!((Finger::new(2e3, 4e4).with_model(&model, 30.0).rcc - 18.0 * MM).abs() < 1e-15);
-    }
-
     /// Turned by 180 degrees about z, a push in y that turned about z turns the other way.
     #[test]
     fn the_opposite_finger_is_the_same_part_turned() {

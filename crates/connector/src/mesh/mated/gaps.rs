@@ -163,18 +163,11 @@ impl Faces {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mesh::mated::overlap::tests::faces;
     use crate::mesh::mated::{Pair, task};
-    use insertion::task::{Solid, geometry};
 
-    /// Returns the faces of boxes with these smallest and largest corners, mm.
     fn drawn(boxes: &[[[f64; 3]; 2]]) -> Vec<Triangle> {
-        let faces = |[min, max]: &[[f64; 3]; 2]| {
-            let [min, max] = [min, max].map(|corner| Vector3::from(*corner) * MM);
-            let solid = Solid::Box { min, max };
-            let (corners, faces) = geometry::hull(&solid.corners()).unwrap();
-            faces.into_iter().map(move |face| face.map(|corner| corners[corner]))
-        };
-        boxes.iter().flat_map(faces).collect()
+        boxes.iter().flat_map(|&[min, max]| faces(min, max)).collect()
     }
 
     /// A tube of 4 mm with a post in it, 5 mm deep, and the plug that goes between them.

@@ -207,18 +207,14 @@ pub fn handle(plug: &[Triangle], size: Size, free: f64) -> Grasp {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use insertion::task::{Solid, geometry};
-    use nalgebra::Vector3;
+    use crate::mesh::mated::overlap::tests::faces;
 
     /// Returns the faces of upright blocks about the axis: width in x, width in y, lower and upper z, mm.
     fn stacked(blocks: &[[f64; 4]]) -> Vec<Triangle> {
-        let faces = |[x, y, low, high]: &[f64; 4]| {
-            let [min, max] = [[-x / 2.0, -y / 2.0, *low], [x / 2.0, y / 2.0, *high]];
-            let [min, max] = [min, max].map(|corner| Vector3::from(corner) * MM);
-            let (corners, faces) = geometry::hull(&Solid::Box { min, max }.corners()).unwrap();
-            faces.into_iter().map(move |face| face.map(|corner| corners[corner]))
+        let of = |&[x, y, low, high]: &[f64; 4]| {
+            faces([-x / 2.0, -y / 2.0, low], [x / 2.0, y / 2.0, high])
         };
-        blocks.iter().flat_map(faces).collect()
+        blocks.iter().flat_map(of).collect()
     }
 
     #[test]

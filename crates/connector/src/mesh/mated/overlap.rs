@@ -223,10 +223,18 @@ fn overlaps(bodies: &[Vec<Part>; 2], depth: f64, least: f64, [x, y]: [f64; 2]) -
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
+    use crate::mesh::Triangle;
 
     pub fn part(min_mm: [f64; 3], max_mm: [f64; 3]) -> Part {
         let [min, max] = [min_mm, max_mm].map(|p| Vector3::from(p) * MM);
         Part { name: String::new(), solid: Solid::Box { min, max }, friction: None }
+    }
+
+    /// Returns the faces of a box with these smallest and largest corners, mm.
+    pub fn faces(min_mm: [f64; 3], max_mm: [f64; 3]) -> Vec<Triangle> {
+        let corners = part(min_mm, max_mm).solid.corners();
+        let (corners, faces) = geometry::hull(&corners).unwrap();
+        faces.iter().map(|face| face.map(|corner| corners[corner])).collect()
     }
 
     /// Four walls about a hole of 0.6 mm, the first with a lead-in, and a floor.

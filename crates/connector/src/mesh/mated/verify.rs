@@ -138,22 +138,12 @@ fn winding(triangles: &[Triangle], place: &Point3<f64>) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::overlap::tests::part;
+    use super::super::overlap::tests::{faces, part};
     use super::*;
-
-    fn cube() -> Vec<Triangle> {
-        cube_of(4.0)
-    }
-
-    fn cube_of(side_mm: f64) -> Vec<Triangle> {
-        let solid = Solid::Box { min: Vector3::zeros(), max: Vector3::repeat(side_mm * MM) };
-        let (corners, faces) = geometry::hull(&solid.corners()).unwrap();
-        faces.iter().map(|face| face.map(|corner| corners[corner])).collect()
-    }
 
     #[test]
     fn a_protruding_part_and_a_bare_face_are_found() {
-        let drawn = cube();
+        let drawn = faces([0.0; 3], [4.0; 3]);
         let whole = part([0.0; 3], [4.0; 3]);
         assert_eq!(Drawn::new(&drawn).deviations(&drawn, &[whole]), []);
         let long = part([0.0; 3], [4.0, 4.0, 4.05]);
@@ -187,7 +177,7 @@ mod tests {
     #[test]
     fn trimmed_corners_are_on_the_grid_of_files() {
         let solid = part([1.0, 1.0, 3.0], [2.0, 2.0, 4.1]).solid;
-        let trimmed = Drawn::new(&cube_of(4.000_03)).trimmed(solid).unwrap();
+        let trimmed = Drawn::new(&faces([0.0; 3], [4.000_03; 3])).trimmed(solid).unwrap();
         for corner in trimmed.corners() {
             let grid = corner / (1e-4 * MM);
             assert!((grid - grid.map(f64::round)).amax() < 1e-6, "{corner}");

@@ -174,11 +174,4 @@ pub(super) mod tests {
         assert_eq!(Measure::SuccessRate.value(&drawn), Some(0.75));
         assert_eq!(Measure::RobustRange.value(&drawn), Some(0.6));
     }
-
-    #[test]
-    fn names_read_back() {
-        for measure in Measure::all() {
-            assert_eq!(measure.to_string().parse(), Ok(measure));
-        }
-    }
 }

@@ -196,18 +196,8 @@ mod tests {
             ("finger.mass_g", 0.0, "finger.mass_g: is 0; it must lie in"),
             ("finger.rcc_mm", f64::INFINITY, "finger.rcc_mm: is inf"),
             ("finger.rcc", 1.0, "`finger.` continues with damping_n_s_per_m, depth_n_per_mm"),
-            (
-                "task.strategy.tild_deg",
-                1.0,
-                "`task.strategy.` continues with phase, start_mm, tilt_",
-            ),
             ("task.strategy.start_mm", 1.0, "`task.strategy.start_mm.` continues with x, y, z"),
-            ("task.strategy.phase.side.motion", 1.0, "continues with move_mm, settle_s, speed_mm_"),
-            (
-                "tilt",
-                1.0,
-                "begins with `finger`, `infill_density_percent`, `infill_direction_deg` or",
-            ),
+            ("tilt", 1.0, "begins with `finger`, `infill_density_percent`, `infill_direction_"),
             ("task.friction.plug_sokcet", 0.2, "did you mean `task.friction.plug_socket`?"),
         ] {
             refused(apply(&[(key, value)]), &[words]);

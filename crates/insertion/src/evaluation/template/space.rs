@@ -155,10 +155,6 @@ mod tests {
         assert_eq!(check(&[(&x, -5.0, 5.0)]), Ok(()), "y keeps the move from being zero");
         for (parameters, words) in [
             (vec![("task.grip.tcp_z_mm", 30.0, 60.0)], "s.toml: task.grip.tcp_z_mm: cannot be 60"),
-            (
-                vec![("task.strategy.phase.sied.speed_mm_per_s", 1.0, 2.0)],
-                "did you mean `task.strategy.phase.side.speed_mm_per_s`?",
-            ),
             (vec![(&y, -5.0, 5.0)], "move_mm.y: cannot be 0"),
             (vec![(&x, -5.0, 5.0), (&y, -5.0, -1.0)], ""),
             (

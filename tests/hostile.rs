@@ -1,9 +1,7 @@
 //! Interference of others with a study while it runs, and files that are not what they should be.
 #![cfg(unix)]
 
-use crate::common::{
-    SLOW, Studies, command, end, kill, lines, optimize, optimize_line, read, run, start,
-};
+use crate::common::{SLOW, Studies, command, end, kill, lines, optimize, read, run, start};
 use std::fs;
 use std::os::unix::fs::{FileTypeExt, MetadataExt, symlink};
 use std::path::{Path, PathBuf};

@@ -280,9 +280,9 @@ fn a_finger_of_a_task_of_ones_own_is_measured_without_naming_it_twice() {
     let next = line(&format!("next {few} own/bench.csv"));
     let best = "Use 20 % infill at 10° now: the best of 2 measured fingers, 6.1 mm on a robot\n";
     assert!(next.succeeds().starts_with(best), "{}", next.stdout);
-    // Predictions carry their interval; two measured fingers are too few to judge the intervals.
+    // Predictions carry their interval and the verdict on them, as in `calibrate`.
     next.says(&[" % likely to be wider than the best measured, else keep that", "(80 %: "]);
-    next.says(&["measurement: 2 fingers,\n", "too few to judge the 80 % intervals"]);
+    next.says(&["\npredictions   do not rely on these predictions yet: measure 3 more,"]);
     assert!(next.stdout.lines().all(|line| line.chars().count() <= 80), "{}", next.stdout);
     // A study recommends the finger that `next` would choose without a further print.
     let found = line(&format!("next --json {few} own/bench.csv")).json();

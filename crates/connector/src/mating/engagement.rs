@@ -81,7 +81,9 @@ impl PlugWalls {
             let (low, high) = (strip.low + z, strip.high + z);
             let faced =
                 |gap: i32| socket.at(x + (gap + 1) * dx, y + (gap + 1) * dy).min(high) - low;
-            let gap = (-most..=most).find(|gap| faced(*gap) > 0.0);
+            // Of the socket behind the wall, for example its tongue inside a shell, only what the wall is in counts.
+            let into = (-most..0).rev().take_while(|gap| faced(*gap) > 0.0).last();
+            let gap = into.or_else(|| (0..=most).find(|gap| faced(*gap) > 0.0));
             found[strip.side].extend(gap.map(|gap| (gap, faced(gap))));
         }
         found.map(|mut gaps| {

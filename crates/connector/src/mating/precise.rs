@@ -213,13 +213,12 @@ pub fn mate(parts: &Parts, scene: &Scene, pose: &Pose, max_play: f64) -> Mate {
         Some((lower, walls)) => measured(lower, Some(*walls)),
         None => {
             let found = measured(pose, None);
-            let overlaps = !fine.overlap(pose).is_empty();
             // Springs hold the plug to a wall, which leaves no play or, without them, too much.
             let pressed = |(_, walls): &(Pose, [f64; 2])| {
                 let free = |axis: usize| {
                     found.play_m[axis] > 0.0 && found.play_m[axis] <= walls[axis] + 2.0 * TOLERANCE
                 };
-                overlaps && !(free(0) && free(1))
+                !(free(0) && free(1))
             };
             let between = fine.between_walls(pose.clone()).filter(pressed);
             between.map_or(found, |(between, walls)| measured(&between, Some(walls)))

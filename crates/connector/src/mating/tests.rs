@@ -213,6 +213,28 @@ fn a_spring_beside_a_key_is_left_out_of_the_play() {
     }
 }
 
+/// The tongue lies behind the walls of the shell, nearer than the distance up to which walls are sought. Springs in the
+/// socket overlap the shell on one, two or three sides.
+#[test]
+fn a_tongue_in_a_shell_is_no_wall_outside_of_it() {
+    let shell = tube([0.0; 2], [8.2, 2.4], [7.4, 1.7], [0.0, 6.0]);
+    let plug = [shell, block([0.0; 2], [10.0, 4.0], [6.0, 10.0])].concat();
+    let socket = [
+        tube([0.0; 2], [10.0, 4.0], [8.4, 2.6], [0.0, 5.0]),
+        block([0.0; 2], [6.6, 0.7], [0.0, 5.0]),
+        block([0.0; 2], [10.0, 4.0], [-2.0, 0.0]),
+    ];
+    for (overlap, sides, number) in [(0.05, 1, 11), (0.05, 2, 5), (0.25, 3, 0), (0.25, 2, 17)] {
+        let height = overlap + 0.2;
+        let along_y =
+            |x: f64, side: f64| block([x, side * (1.3 - height / 2.0)], [0.8, height], [1.0, 3.0]);
+        let along_x = block([4.2 - height / 2.0, 0.3], [height, 0.6], [1.0, 3.0]);
+        let springs = [along_y(-2.0, 1.0), along_y(2.0, 1.0), along_x, along_y(0.0, -1.0)];
+        let socket = [socket.concat(), springs[..=sides].concat()].concat();
+        close(&found(&plug, &socket, number).0, [0.0; 3], [0.2, 0.2]);
+    }
+}
+
 /// A press fit has no walls that could be springs.
 #[test]
 fn a_press_fit_has_little_play() {

@@ -109,7 +109,8 @@ fn published((finger, range_mm): &MeasuredFinger) -> Bar {
 fn on_bench(answer: &Answer, bench: &BenchPrediction) -> Vec<Bar> {
     let Some(best) = bench.best.first() else { return Vec::new() };
     let interval = interval([best.low_mm, best.high_mm]);
-    let name = format!("on the bench: {} ({interval})", mm(best.range_mm));
+    let finger = design(&best.design);
+    let name = format!("expected on the bench, {finger}: {} ({interval})", mm(best.range_mm));
     let expected = Bar::width_only(name, &[("likely", best.high_mm), ("measured", best.low_mm)]);
     let mut rows = vec![expected];
     if let Some(BestMeasured { design: finger, range_mm, .. }) = answer.use_now() {

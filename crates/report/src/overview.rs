@@ -68,6 +68,9 @@ fn drawing_and_files(answer: &Answer, files: &PageFiles) -> Option<Markup> {
     let finger = answer.verdict.finger()?;
     let best = match (&answer.front, answer.use_now()) {
         (Some(_), _) => format!(", best in {}", answer.record.config.objective.first().name()),
+        (None, Some(_)) if answer.record.on_bench.is_some() => {
+            ", largest expected range".to_owned()
+        }
         (None, Some(_)) => ", best in simulation".to_owned(),
         (None, None) => String::new(),
     };
@@ -77,7 +80,6 @@ fn drawing_and_files(answer: &Answer, files: &PageFiles) -> Option<Markup> {
     let names = printer::FILES.into_iter().filter(|(file, _)| files.files.contains(file));
     Some(html! {
         div.finger { (figure(&svg, "drawing of the finger", &caption)) }
-        @if !files.files.is_empty() { p { "Files of " (design(finger)) ":" } }
         p.files { @for (file, name) in names { a.button href=(file) { (name) } } }
     })
 }

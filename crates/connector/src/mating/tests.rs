@@ -123,6 +123,17 @@ fn peg_rests_in_its_hole() {
 }
 
 /// A nose of 3 mm, with 2 mm of play, ahead of the body.
+/// Plays that are no multiples of a cell.
+#[test]
+fn a_play_between_two_cells_is_known_within_one() {
+    let (mate, _) = found(&peg([3.0, 2.0]), &hole([6.0, 5.0], [3.213, 2.147], 4.0), 3);
+    let mut play = mate.play_m;
+    play.sort_by(f64::total_cmp);
+    for (measured, drawn) in play.into_iter().zip([0.147, 0.213]) {
+        assert!((measured - drawn * MM).abs() < 2.0 * PLAY_CLOSE, "{mate:?}");
+    }
+}
+
 #[test]
 fn a_narrower_nose_is_ahead_of_the_part_that_engages() {
     let nose = block([0.0; 2], [12.0, 5.0], [-12.0, -9.0]);

@@ -32,8 +32,7 @@ pub struct Uncertainty {
 }
 
 /// Spread of each error, with the source of the values; a spread of 0 leaves the error out.
-#[derive(Debug, Clone, PartialEq, Default, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Errors {
     /// Position of the start.
     pub offset: OffsetSpread,
@@ -81,14 +80,18 @@ pub enum Statistic {
     LowerTail(f64),
 }
 
-/// Keys of an uncertainty file beside those of [`Errors`].
-const HEADER: [&str; 4] = ["name", "description", "success_rate", "robust_range"];
-
-/// Values of [`HEADER`], converted to SI units.
+/// Keys of an uncertainty file, converted to SI units.
 #[derive(Deserialize)]
-struct Header {
+#[serde(deny_unknown_fields)]
+struct RawUncertainty {
     name: String,
     description: String,
+    offset: OffsetSpread,
+    yaw: YawSpread,
+    friction: FrictionSpread,
+    stiffness: StiffnessSpread,
+    clearance: ClearanceSpread,
+    grasp: GraspSpread,
     success_rate: SuccessSettings,
     robust_range: RawRobust,
 }
@@ -188,12 +191,17 @@ impl Uncertainty {
         if table.get("parameter").is_some() {
             return Self::of_cell(Priors::parse(text, file)?, file);
         }
-        // Read before the header, one of whose keys may be misspelt.
-        let errors = document.clone().without(&HEADER).read()?;
-        let Header { name, description, success_rate: success, robust_range } = document.read()?;
+        let raw: RawUncertainty = document.read()?;
         numbers::check_file("uncertainty", &table, file)?;
-        let robust = robust_range.settings(Check { file })?;
-        Ok(Uncertainty { name, description, errors, success, robust, cell: None })
+        let RawUncertainty { offset, yaw, friction, stiffness, clearance, grasp, .. } = raw;
+        Ok(Uncertainty {
+            errors: Errors { offset, yaw, friction, stiffness, clearance, grasp },
+            success: raw.success_rate,
+            robust: raw.robust_range.settings(Check { file })?,
+            name: raw.name,
+            description: raw.description,
+            cell: None,
+        })
     }
 
     /// Returns the distribution of the parameters of a robot cell, with the settings of the shipped uncertainty file.

@@ -167,6 +167,15 @@ fn a_study_with_measurements_leads_with_the_finger_that_is_best_on_the_bench() {
     let bound = folder.study("a", 12, &json).json()["answer"]["headline"].to_string();
     assert!(bound.contains("measured finger, 1.5 mm or more on a robot"), "{bound}");
     folder.file("a/bench.json", kept);
+    // A finger that inserted from no start is not the one to print.
+    let [density, direction] = ["density_percent", "direction_deg"]
+        .map(|key| best["values"][format!("infill_{key}")].clone());
+    let failed = format!("{HEAD}ket8,20,10,5.0\nket8,{density},{direction},not measurable\n");
+    let failed = folder.file("failed.csv", failed);
+    let other = folder.study("c", 12, &[&FEW[..], &["--json", "--measurements", &failed]].concat());
+    let (other, chosen) =
+        (other.json(), |found: &serde_json::Value| found["recommended"]["values"].clone());
+    assert!(chosen(&other).is_object() && chosen(&other) != best["values"], "{other}");
     // The search did not know of it.
     let plain = folder.study("b", 12, &["--task", "ket8", "--json"]).json();
     assert_eq!(found["recommended_by_simulation"], plain["recommended"]);

@@ -145,7 +145,7 @@ class Answer(Result):
                      "robot_stops", "not_repeatable"]
     headline: str
     expectation: str
-    #: The best measured finger, if measurements do not support ``finger``.
+    #: The best measured finger: of your measurements or, if they do not support ``finger``, of the published ones.
     use_now: BestMeasured | None
     #: Values of the finger by key.
     finger: dict[str, float] | None

@@ -268,6 +268,9 @@ class Advice(Result):
     #: Number of fingers predicted without their own measurement, and of those that are in their 80 % interval.
     loo_designs: int
     loo_inside: int
+    #: Whether the predictions can be trusted within their intervals, and advice with its reason.
+    reliable: bool
+    verdict: str
     #: Printed fingers that insert from no start; they are not recommended again.
     not_measurable: tuple[dict[str, float], ...]
     #: Number of simulations with a robot stop in most insertions, and of all simulations.

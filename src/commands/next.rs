@@ -9,7 +9,7 @@ use crate::{Context, Failure, Output, command};
 use ask_tell::stream::stream;
 use calibration::bench::Settings;
 use calibration::calibrate::{TaskResult, leave_one_out};
-use calibration::next::{Advice, BestMeasured, Choice, Fingers, Print, advise};
+use calibration::next::{Advice, Fingers, Print, advise};
 use input::shipped::Source;
 use insertion::Design;
 use insertion::outcome::STOP_REMEDY;
@@ -203,26 +203,10 @@ impl Advised {
                 _ => print(next, "Then print", ""),
             };
         }
-        text += &self.wider(print_cost_mm);
         if !self.not_measurable.is_empty() {
             let fingers = self.not_measurable.iter().map(design).collect::<Vec<_>>().join("; ");
             text += &format!("printed, not measurable: {fingers}\n");
         }
         text
-    }
-
-    /// Returns the finger with the largest expected range as text if printing stops, unless it is measured, listed, or not
-    /// expected to be wider than the best measured one by the cost of a print.
-    fn wider(&self, print_cost_mm: f64) -> String {
-        let Advice { choice, use_now, next, stop, .. } = &self.advice;
-        let wider = |found: &&Choice| {
-            let listed = next.iter().any(|print| print.design == found.design);
-            let by = |best: &BestMeasured| found.expected_mm - best.range_mm >= print_cost_mm;
-            *stop && !found.measured && !listed && use_now.as_ref().is_none_or(by)
-        };
-        choice.as_ref().filter(wider).map_or(String::new(), |found| {
-            let expected = interval(found.expected_mm, found.low_mm, found.high_mm);
-            format!("largest expected range: {}, {expected}, not measured\n", design(&found.design))
-        })
     }
 }

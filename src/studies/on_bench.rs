@@ -55,7 +55,7 @@ pub(crate) fn predict(
         let nothing = || Failure::running("the space has no finger to predict");
         let task = subjects.first().zip(calibration.tasks.first());
         let (subject, result) = task.ok_or_else(nothing)?;
-        let best = by_range(result).first().copied().ok_or_else(nothing)?;
+        let best = by_range(subject, result).first().copied().ok_or_else(nothing)?;
         let (task, cache) = (setup.only_task()?, known.cache.clone());
         let simulation = Simulation::new(&setup.evaluator, task, [].iter(), cache, context.stop);
         let simulated = simulation.window(&best.design, &[])?;

@@ -14,7 +14,7 @@ use insertion::space::Design;
 use rand::Rng;
 use rayon::prelude::*;
 use serde::Serialize;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Finger to print; the fields are the keys of `--json`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -64,6 +64,25 @@ pub struct BestMeasured {
     pub at_least: bool,
     /// Number of fingers with a measured range.
     pub fingers: usize,
+}
+
+impl BestMeasured {
+    /// Returns the finger with the largest mean of its measured ranges, mm, of which some may be lower bounds; of equal
+    /// ones, one without a bound.
+    pub fn of<'a>(measured: impl Iterator<Item = (&'a Design, f64, bool)>) -> Option<Self> {
+        let mut all: BTreeMap<String, (&Design, Vec<f64>, bool)> = BTreeMap::new();
+        for (design, range_mm, at_least) in measured {
+            let own = all.entry(design.labelled()).or_insert((design, Vec::new(), false));
+            own.1.push(range_mm);
+            own.2 |= at_least;
+        }
+        let fingers = all.len();
+        let one = |(design, own, at_least): (_, Vec<f64>, _)| Some((design, mean(own)?, at_least));
+        let best = all.into_values().filter_map(one);
+        let best = best.max_by(|a, b| a.1.total_cmp(&b.1).then(b.2.cmp(&a.2)))?;
+        let (design, range_mm, at_least): (&Design, f64, bool) = best;
+        Some(BestMeasured { design: design.clone(), range_mm, at_least, fingers })
+    }
 }
 
 /// Recommended prints; the fields are the keys of `--json`.
@@ -128,8 +147,13 @@ pub fn advise(
         columns.iter().rev().copied().max_by(|&a, &b| expected[a][0].total_cmp(&expected[b][0]))
     };
     let best_known_mm = best(&printed[..measured.len()]).map(|column| expected[column][0]);
-    let in_use = best_measured(bench, &all[..measured.len()]);
-    let in_use_mm = in_use.map(|(column, ..)| expected[column][0]);
+    let ranges_mm =
+        bench.observations.iter().map(|one| (&designs[one.finger], one.range_mm, one.at_least));
+    let use_now = BestMeasured::of(ranges_mm);
+    let in_use = use_now
+        .as_ref()
+        .and_then(|best| (0..measured.len()).find(|column| designs[all[*column]] == best.design));
+    let in_use_mm = in_use.map(|column| expected[column][0]);
     let insert = (0..measured.len()).chain(known.len()..all.len());
     let choice = best(&insert.collect::<Vec<_>>()).map(|column| {
         let ([mean_mm, low_mm, high_mm], design) = (expected[column], designs[all[column]].clone());
@@ -166,28 +190,14 @@ pub fn advise(
             high_mm,
             expected_gain_mm: choice_mm,
             gain_in_use_mm: use_mm,
-            probability_better: in_use.map(|(best, ..)| given.probability_above(column, best)),
+            probability_better: in_use.map(|best| given.probability_above(column, best)),
             needs_print: needs_print(column),
             reason,
         });
         ranges.condition(column);
         printed.push(column);
     }
-    let use_now = in_use.map(|(column, range_mm, at_least)| {
-        let design = designs[all[column]].clone();
-        BestMeasured { design, range_mm, at_least, fingers: measured.len() }
-    });
     Advice { use_now, best_known_mm, next, choice, stop }
-}
-
-/// Returns the place of the finger with the largest measured range, that range, mm, and whether it is only a lower bound.
-fn best_measured(bench: &Bench<'_>, fingers: &[usize]) -> Option<(usize, f64, bool)> {
-    let measured = |(place, &finger): (usize, &usize)| {
-        let own = || bench.observations.iter().filter(|one| one.finger == finger);
-        let range_mm = mean(own().map(|one| one.range_mm))?;
-        Some((place, range_mm, own().any(|one| one.at_least)))
-    };
-    fingers.iter().enumerate().filter_map(measured).max_by(|a, b| a.1.total_cmp(&b.1))
 }
 
 /// Joint distribution of the fingers' true ranges, mm.
@@ -424,6 +434,22 @@ mod tests {
         let pulled = [1, 2].map(|column| ranges.means[column] - before[column]);
         assert!((pulled[0] + before[1]).abs() < 1e-9 && (pulled[0] + pulled[1]).abs() < 1e-9);
         assert_eq!(ranges.means[0], before[0]);
+    }
+
+    /// The mean of several days counts, and of equal ranges a measured one before a lower bound, in any order.
+    #[test]
+    fn the_best_measured_finger_has_the_largest_mean_range() {
+        let [a, b, c] = [10.0, 20.0, 30.0].map(|density| Design::infill(density, 0.0));
+        let mut lines = vec![(&a, 5.0, false), (&b, 7.0, false), (&b, 3.0, false), (&c, 5.0, true)];
+        for _ in 0..2 {
+            let best = BestMeasured::of(lines.iter().copied()).unwrap();
+            assert_eq!((&best.design, best.range_mm, best.at_least), (&a, 5.0, false));
+            assert_eq!(best.fingers, 3);
+            lines.reverse();
+        }
+        let best = BestMeasured::of([(&a, 5.0, false), (&c, 5.1, true)].into_iter()).unwrap();
+        assert_eq!((best.design, best.at_least), (c, true));
+        assert_eq!(BestMeasured::of([].into_iter()), None);
     }
 
     #[test]

@@ -191,9 +191,13 @@ pub fn parameters_csv(calibration: &Calibration) -> String {
 /// Number of fingers that a study stores, those with the largest predicted ranges.
 const BEST_FINGERS: usize = 5;
 
-/// Returns the fingers of the space by their predicted ranges, best first.
-pub fn by_range(result: &TaskResult) -> Vec<&Prediction> {
-    let mut order: Vec<&Prediction> = result.predictions.iter().collect();
+/// Returns the fingers of the space by their predicted ranges, best first, without those that were printed and inserted
+/// from no start.
+pub fn by_range<'a>(subject: &Subject, result: &'a TaskResult) -> Vec<&'a Prediction> {
+    let failed = subject.not_measurable();
+    let inserts = |(finger, _): &(usize, &Prediction)| !failed.contains(finger);
+    let all = result.predictions.iter().enumerate().filter(inserts);
+    let mut order: Vec<&Prediction> = all.map(|(_, one)| one).collect();
     order.sort_by(|a, b| b.range_mm.total_cmp(&a.range_mm));
     order
 }
@@ -231,7 +235,7 @@ pub fn bench_prediction(
         fingers: result.predictions.len(),
         trust: result.accuracy(subject.emulator.error_mm),
         warnings: doubt.into_iter().chain(warning(subject)).collect(),
-        best: by_range(result).iter().take(BEST_FINGERS).map(finger).collect(),
+        best: by_range(subject, result).iter().take(BEST_FINGERS).map(finger).collect(),
         simulated,
     }
 }

@@ -1,10 +1,9 @@
 //! Windows of the recommended finger as bars over the offset of the start: simulated, firm (all repeats insert),
 //! simulated with the stiffness computed from its ribs, and measured on a robot.
 
-use crate::answer::words::{design, ends_mm, interval, mm, on, span};
+use crate::answer::words::{design, ends_mm, interval, measured, mm, on, span};
 use crate::answer::{Answer, MeasuredFinger, OnTask, Recommended, RobotWindow, Trust, lines};
 use crate::glossary::explained;
-use calibration::next::BestMeasured;
 use insertion::{Outcome, Window};
 use maud::{Markup, html};
 use study::{BenchPrediction, ByRibs};
@@ -113,9 +112,9 @@ fn on_bench(answer: &Answer, bench: &BenchPrediction) -> Vec<Bar> {
     let name = format!("expected on the bench, {finger}: {} ({interval})", mm(best.range_mm));
     let expected = Bar::width_only(name, &[("likely", best.high_mm), ("measured", best.low_mm)]);
     let mut rows = vec![expected];
-    if let Some(BestMeasured { design: finger, range_mm, .. }) = answer.use_now() {
-        let name = format!("measured on a robot, {}: {}", design(&finger), mm(range_mm));
-        rows.push(Bar::width_only(name, &[("measured", range_mm)]));
+    if let Some(best) = answer.use_now() {
+        let name = format!("measured on a robot, {}: {}", design(&best.design), measured(&best));
+        rows.push(Bar::width_only(name, &[("measured", best.range_mm)]));
     }
     rows.push(Bar::simulated(&bench.simulated.window, None));
     rows

@@ -28,7 +28,7 @@ pub fn text(subject: &Subject, result: &TaskResult) -> String {
             100.0 * INTERVAL
         );
     }
-    let best = || by_range(result).into_iter().take(LISTED);
+    let best = || by_range(subject, result).into_iter().take(LISTED);
     let rows = best().map(|one| {
         [
             design(&one.design),

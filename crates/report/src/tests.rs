@@ -232,7 +232,8 @@ fn stops_that_end_most_trials_are_the_headline() {
 
 #[test]
 fn a_finger_whose_repeats_fail_at_the_nominal_start_is_not_usable() {
-    let mut study = record(vec![walked(0, [20.0, 20.0])]);
+    // The second ties with it and was not repeated.
+    let mut study = record(vec![walked(0, [20.0, 20.0]), walked(1, [22.0, 20.0])]);
     let recorded = study.evaluations[0].clone();
     for (window, usable) in [(Some(FirmWindow::default()), true), (None, false)] {
         let firm = vec![FirmResult { window, trials: 12 }];
@@ -241,6 +242,7 @@ fn a_finger_whose_repeats_fail_at_the_nominal_start_is_not_usable() {
         let headline = answer.headline();
         assert_eq!(headline.starts_with("Not usable as it is: with slightly varied "), !usable);
         assert_eq!(answer.verdict_key() == "not_repeatable", !usable, "{headline}");
+        assert_eq!(headline.ends_with("; best finger: 20 % infill at 20°"), !usable, "{headline}");
         assert!(html(&study).contains(&format!("<h1>{headline}</h1>")));
     }
 }

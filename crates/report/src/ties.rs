@@ -56,8 +56,8 @@ pub(super) fn section(answer: &Answer) -> Option<Markup> {
 fn reasons(answer: &Answer, found: &Ties, recorded: &Recorded, named: u64) -> String {
     let is_recorded = |other: &&Recorded| other.index == recorded.index;
     // If there are measurements, the recommended finger may differ from the best one in simulation.
-    let recommended =
-        answer.verdict.finger() == Some(&recorded.design) && answer.use_now().is_none();
+    let use_now = answer.use_now().is_none_or(|best| best.design == recorded.design);
+    let recommended = answer.verdict.finger() == Some(&recorded.design) && use_now;
     let best = if recommended { "recommended" } else { "best in simulation" };
     let named = (recorded.index == named).then_some(best);
     let safe = found.safe.as_ref().filter(|safe| is_recorded(&safe.design)).map(|safe| safe.name());

@@ -213,7 +213,7 @@ pub fn mate(parts: &Parts, scene: &Scene, pose: &Pose, max_play: f64) -> Mate {
         Some((lower, walls)) => measured(lower, Some(*walls)),
         None => {
             let found = measured(pose, None);
-            // Springs hold the plug to a wall, which leaves no play or, without them, too much.
+            // Held to a wall by springs, the plug has no play or, where they are left out, too much.
             let pressed = |(_, walls): &(Pose, [f64; 2])| {
                 let free = |axis: usize| {
                     found.play_m[axis] > 0.0 && found.play_m[axis] <= walls[axis] + 2.0 * TOLERANCE

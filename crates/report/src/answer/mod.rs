@@ -12,7 +12,6 @@ mod trust;
 mod verdict;
 pub mod words;
 
-use ask_tell::statistics::mean;
 use calibration::next::BestMeasured;
 use calibration::rank_correlation::{Order, RankCorrelation, errors_percent, rank_correlation};
 use input::shipped::TASKS;
@@ -104,7 +103,8 @@ impl<'a> Answer<'a> {
 
     /// Returns the first sentence of the answer: the measured finger to use, else the result of the search.
     pub fn headline(&self) -> String {
-        self.use_now().map_or_else(|| self.found(), |best| words::use_now(&best))
+        let use_now = self.use_now().filter(|_| self.verdict.finger().is_some());
+        use_now.map_or_else(|| self.found(), |best| words::use_now(&best))
     }
 
     /// Returns the result of the search, with the number of evaluations of an unfinished study.
@@ -140,12 +140,12 @@ impl<'a> Answer<'a> {
         tasks.into_iter().enumerate().find(|(_, found)| found.mostly_stopped())
     }
 
-    /// Returns the first task on which a repeat fails at the nominal start, if the recommended design was repeated;
-    /// `None` if there is none.
-    pub fn unsteady(&self) -> Option<&OnTask<'a>> {
-        let simulated = self.verdict.finger().is_some() && self.record.on_bench.is_none();
-        let found = self.recommended.as_ref().filter(|_| simulated)?;
-        found.tasks.iter().find(|task| task.firm.is_some_and(|firm| firm.window.is_none()))
+    /// Returns the first task on which a repeat of the finger to print fails at the nominal start; `None` if there is
+    /// none, and for a front.
+    pub fn unsteady(&self) -> Option<&'a str> {
+        let simulated = self.front.is_none() && self.record.on_bench.is_none();
+        let found = self.design_to_print().filter(|_| simulated)?;
+        unsteady(self.record, found.index)
     }
 
     /// Returns the headline of a finger with which the robot stops in most insertions, or with which repeats fail at the
@@ -158,7 +158,7 @@ impl<'a> Answer<'a> {
                 words::not_usable(found, &on)
             }
             None => {
-                let on = words::on(config, self.unsteady()?.name);
+                let on = words::on(config, self.unsteady()?);
                 format!(
                     "Not usable as it is: with slightly varied friction, start or time step the nominal start fails{on}"
                 )
@@ -268,23 +268,17 @@ impl<'a> Answer<'a> {
     }
 }
 
-/// Returns the measured finger with the largest range, or lower bound of it; the mean, if it was measured several times.
+/// Returns the first task on which a repeat of a design fails at the nominal start; `None` if there is none, or if the
+/// design was not repeated.
+fn unsteady(record: &StudyRecord, index: u64) -> Option<&str> {
+    let walked = record.walked.iter().find(|walked| walked.recorded.index == index)?;
+    let mut firm = record.config.tasks().zip(&walked.firm);
+    firm.find(|(_, firm)| firm.window.is_none()).map(|(task, _)| task)
+}
+
+/// Returns the finger with the largest range, or lower bound of it, of the user's measurements.
 fn best_on_bench(bench: &BenchPrediction) -> Option<BestMeasured> {
     let ranges = bench.ranges.iter().map(|(design, mm)| (design, *mm, false));
     let bounds = bench.bounds.iter().filter_map(|(design, mm)| Some((design, (*mm)?, true)));
-    let mut fingers: Vec<(&Design, Vec<f64>, bool)> = Vec::new();
-    for (design, range_mm, at_least) in ranges.chain(bounds) {
-        match fingers.iter_mut().find(|(of, ..)| *of == design) {
-            Some((_, own, bound)) => {
-                own.push(range_mm);
-                *bound |= at_least;
-            }
-            None => fingers.push((design, vec![range_mm], at_least)),
-        }
-    }
-    let count = fingers.len();
-    let one = |(design, own, at_least): (_, Vec<f64>, _)| Some((design, mean(own)?, at_least));
-    let best = fingers.into_iter().filter_map(one).max_by(|a, b| a.1.total_cmp(&b.1));
-    let (design, range_mm, at_least): (&Design, f64, bool) = best?;
-    Some(BestMeasured { design: design.clone(), range_mm, at_least, fingers: count })
+    BestMeasured::of(ranges.chain(bounds))
 }

@@ -2,6 +2,7 @@
 
 use super::force::ExcessForce;
 use super::trust::{MeasuredFinger, range_mm};
+use super::unsteady;
 use ask_tell::process::distance2;
 use ask_tell::statistics::span;
 use insertion::evaluation::objective::Measure;
@@ -38,7 +39,8 @@ pub struct Spread<'a> {
     pub values: [f64; 2],
 }
 
-/// Safe choice: of the tied designs whose force connector and robot withstand, the one with the widest range measured
+/// Safe choice: of the tied designs whose force connector and robot withstand and no repeat of which fails at the
+/// nominal start, the one with the widest range measured
 /// on a robot; if none was measured, the one with the least force.
 #[derive(Debug, Clone)]
 pub struct SafeChoice<'a> {
@@ -84,8 +86,10 @@ impl<'a> Ties<'a> {
         };
         let force = |r: &'a Recorded| record.measure(walked(r), Measure::PeakForce);
         let tied = if designs.len() < 2 { &[] } else { &designs[..] };
-        let allowed =
-            |(r, _): &&(&'a Recorded, f64)| ExcessForce::of(record, &walked(r).tasks()).is_none();
+        let allowed = |(r, _): &&(&'a Recorded, f64)| {
+            ExcessForce::of(record, &walked(r).tasks()).is_none()
+                && unsteady(record, r.index).is_none()
+        };
         let safe = |&(design, loss): &(&'a Recorded, f64)| SafeChoice {
             design,
             measured_mm: range_mm(measured, &design.design),

@@ -1,7 +1,7 @@
 //! Recommended action: headline and expected performance.
 
 use super::words::{design as finger, evaluated, interval, mm, outcome, span};
-use super::{Answer, Recommended, Ties};
+use super::{Answer, Recommended, Ties, unsteady};
 use insertion::outcome::stop_words;
 use insertion::{Design, Evaluation, Measure};
 use study::{BenchFinger, Recorded, StudyRecord, nearest};
@@ -65,7 +65,10 @@ impl<'a> Verdict<'a> {
         if let Some(front) = &answer.front {
             return Verdict::Choose { first, of: front.designs.len() };
         }
-        let Some(ties) = &found.ties else { return Verdict::Print(first) };
+        let steady = unsteady(answer.record, found.design.index).is_none();
+        let Some(ties) = found.ties.as_ref().filter(|_| steady) else {
+            return Verdict::Print(first);
+        };
         let of = ties.designs.len();
         match &ties.safe {
             Some(safe) if ties.share >= MIN_SHARE => Verdict::Any { safe: &safe.design.design, of },
@@ -99,11 +102,13 @@ impl<'a> Verdict<'a> {
     /// Returns the first sentence of the answer.
     pub(super) fn headline(&self) -> String {
         match self {
-            Verdict::Print(design) => format!("Print the finger with {}", finger(design)),
+            // The headline of a measured one is `use_now`.
+            Verdict::Print(design) | Verdict::MeasuredBefore(design) => {
+                format!("Print the finger with {}", finger(design))
+            }
             Verdict::Any { safe, of } => {
                 format!("Any of {of} fingers will do; by default print {}", finger(safe))
             }
-            Verdict::MeasuredBefore(_) => "No finger to use yet: no range was measured".to_owned(),
             Verdict::Choose { first, of: 1 } => {
                 format!("Print the finger with {}: best in all objectives", finger(first))
             }
@@ -119,9 +124,6 @@ impl<'a> Verdict<'a> {
 /// Returns the expected performance of the finger and the evidence for the estimate, as a sentence without a full stop.
 /// If the headline names a measured finger, the result of the search comes first.
 pub fn expectation(answer: &Answer) -> String {
-    if let Some(best) = answer.record.on_bench.as_ref().and_then(|found| found.best.first()) {
-        return on_bench(answer, best);
-    }
     if let Verdict::NothingInserts { nearest, fails, .. } = &answer.verdict {
         let ends = |found: &&Evaluation| {
             let stop = stop_words(found.nominal_stop());
@@ -130,6 +132,9 @@ pub fn expectation(answer: &Answer) -> String {
         let fails = fails.as_ref().map_or("fails".to_owned(), ends);
         let nearest = finger(&nearest.design);
         return format!("the nearest to inserting, {nearest}, {fails} at the nominal start");
+    }
+    if let Some(best) = answer.record.on_bench.as_ref().and_then(|found| found.best.first()) {
+        return on_bench(answer, best);
     }
     match &answer.recommended {
         None => no_recommendation(answer.record),
@@ -147,11 +152,11 @@ pub fn expectation(answer: &Answer) -> String {
 fn on_bench(answer: &Answer, best: &BenchFinger) -> String {
     let [range, low, high] = [best.range_mm, best.low_mm, best.high_mm];
     let expected = format!("{} ({low:.1} to {high:.1} at 80 %)", mm(range));
-    let whose = match (answer.use_now(), &answer.verdict) {
-        (Some(now), _) if now.design == best.design => format!("expect {expected}"),
-        (None, Verdict::Print(_)) => format!("expect {expected}"),
-        (_, verdict) => {
-            let not = if matches!(verdict, Verdict::Print(_)) { "not " } else { "" };
+    let whose = match answer.use_now().is_some_and(|now| now.design == best.design) {
+        true => format!("expect {expected}"),
+        false => {
+            let measured = matches!(answer.verdict, Verdict::MeasuredBefore(_));
+            let not = if measured { "" } else { "not " };
             let finger = finger(&best.design);
             format!("largest expected range: {finger}, {expected}, {not}measured")
         }

@@ -23,13 +23,16 @@ pub fn mm(length_mm: f64) -> String {
 
 /// Returns which finger to use now: the best measured one.
 pub fn use_now(best: &BestMeasured) -> String {
-    let BestMeasured { design, range_mm, at_least, fingers } = best;
-    let more = if *at_least { " or more" } else { "" };
-    let rank = match fingers {
+    let rank = match best.fingers {
         1 => "the only measured finger".to_owned(),
-        _ => format!("the best of {fingers} measured fingers"),
+        fingers => format!("the best of {fingers} measured fingers"),
     };
-    format!("Use {} now: {rank}, {}{more} on a robot", self::design(design), mm(*range_mm))
+    format!("Use {} now: {rank}, {} on a robot", design(&best.design), measured(best))
+}
+
+/// Returns a measured range: `5.1 mm`, or `5.1 mm or more` of a lower bound.
+pub fn measured(BestMeasured { range_mm, at_least, .. }: &BestMeasured) -> String {
+    mm(*range_mm) + if *at_least { " or more" } else { "" }
 }
 
 /// Returns an interval of lengths: `3.1 to 3.5 mm`.

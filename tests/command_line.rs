@@ -479,8 +479,11 @@ fn a_finger_is_computed_from_its_ribs() {
     optimize_line("finger --density 0.2 --direction 0")
         .fails(2, &["--density: is 0.2", "1 .. 100"]);
     optimize_line(&format!("{infill} --finger finray")).fails(2, &["did you mean `finray9`"]);
+    // Measured on the paper's finger: 0.80 mm in place of 0.62 make it 26 % stiffer.
     let thicker = optimize_line(&format!("{infill} --json --set finger.skin.thickness_mm=0.8"));
-    assert_ne!(thicker.json()["pad"], json["pad"]);
+    let thicker = thicker.json()["pad"]["compliance_n_per_mm"].as_f64().unwrap();
+    let ratio = thicker / json["pad"]["compliance_n_per_mm"].as_f64().unwrap();
+    assert!((1.15..1.4).contains(&ratio), "{ratio}");
     optimize_line(&format!("{infill} --set task.strategy.tilt_deg=8"))
         .fails(2, &["finger.skin.thickness_mm"]);
 }

@@ -109,6 +109,22 @@ fn shell() -> [Vec<Block>; 2] {
     [plug.concat(), socket]
 }
 
+/// Nine pins, five and four, in a shell of 0.4 mm, and their block in another shell.
+fn d_sub() -> [Vec<Block>; 2] {
+    let rows: [(f64, Vec<f64>); 2] = [(-1.42, 5), (1.42, 4)].map(|(x, count)| {
+        (x, (0..count).map(|j| (f64::from(j) - f64::from(count - 1) / 2.0) * 2.76).collect())
+    });
+    let pins = rows.iter().flat_map(|(x, ys)| ys.iter().map(|y| (*x, *y)));
+    let pin = |(x, y): (f64, f64)| block([x - 0.5, x + 0.5], [y - 0.5, y + 0.5], [0.6, 6.0]);
+    let mut plug = frame([9.0, 18.0], [8.2, 17.2], [0.0, 6.0]);
+    plug.extend(pins.map(pin));
+    plug.push(block([-6.0, 6.0], [-15.0, 15.0], [6.0, 20.0]));
+    let rows = [0, 1].map(|i| (rows[i].0, &rows[i].1[..]));
+    let mut socket = sieve([8.0, 17.0], &rows, 0.65, [-6.0, 0.0]);
+    socket.push(block([-6.0, 6.0], [-15.0, 15.0], [-8.0, -6.0]));
+    [plug, socket]
+}
+
 /// Plug with a bore, and the post that it goes about.
 fn post() -> [Vec<Block>; 2] {
     let mut plug = frame([8.0, 9.0], [3.16, 4.2], [0.0, 6.0]);
@@ -124,6 +140,63 @@ fn post() -> [Vec<Block>; 2] {
 fn through() -> [Vec<Block>; 2] {
     let plug = vec![block([-2.0, 2.0], [-4.0, 4.0], [0.0, 30.0])];
     [plug, frame([14.0, 18.0], [4.2, 8.2], [-5.0, 0.0])]
+}
+
+/// Prongs in as many holes, or a shell with a seam about a tongue, by a number; clearance, mm, in x and in y.
+fn random(number: u64) -> ([Vec<Block>; 2], [f64; 2]) {
+    let mut state = number.wrapping_add(17).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    let mut random = |low: f64, high: f64| {
+        state =
+            state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        // Hundredths of a millimetre, as drawings have them.
+        let value = low + (high - low) * (state >> 11) as f64 / (1_u64 << 53) as f64;
+        (value * 100.0).round() / 100.0
+    };
+    let clearance = [random(0.05, 0.3), random(0.05, 0.3)];
+    let (deep, wide) = (random(3.0, 6.0), random(2.0, 4.0));
+    let about = |middle: f64, width: f64| [middle - width / 2.0, middle + width / 2.0];
+    let (mut plug, mut socket) = (Vec::new(), Vec::new());
+    let half;
+    if number.is_multiple_of(3) {
+        let (long, sheet) = (random(8.0, 12.0), random(0.2, 0.4));
+        let inner = [wide + 1.4 + clearance[0], long + clearance[1]];
+        let outer = inner.map(|side| side + 2.0 * sheet);
+        half = outer.map(|side| side / 2.0);
+        socket = frame(outer, inner, [-deep, 0.0]);
+        // The second bar has a seam.
+        let [[x, y, z], [u, v, w]] = socket[1];
+        let at = random(-3.0, 3.0).clamp(x + 0.3, u - 0.3);
+        socket[1] = block([x, at - 0.05], [y, v], [z, w]);
+        socket.push(block([at + 0.05, u], [y, v], [z, w]));
+        let tongue = [0.6, long - 3.0];
+        socket.push(block(about(0.0, tongue[0]), about(0.0, tongue[1]), [-deep, -0.5]));
+        let slot = [tongue[0] + clearance[0] + 0.1, tongue[1] + clearance[1] + 0.1];
+        plug.extend(frame([wide + 1.4, long], slot, [0.0, deep]));
+    } else {
+        let count = 1 + number % 3 + number / 3 % 2;
+        half = [wide / 2.0 + 1.5, 2.5 * count as f64];
+        let mut low = -half[1];
+        for i in 0..count {
+            let (y, thick) = (5.0 * (i as f64 - (count - 1) as f64 / 2.0), 1.5 + 0.4 * i as f64);
+            plug.push(block(about(0.0, wide), about(y, thick), [0.0, deep]));
+            let [from, to] = about(y, thick + clearance[1]);
+            socket.push(block([-half[0], half[0]], [low, from], [-deep, 0.0]));
+            for side in [-1.0, 1.0] {
+                let inner = side * (wide + clearance[0]) / 2.0;
+                let x = [inner.min(side * half[0]), inner.max(side * half[0])];
+                socket.push(block(x, [from, to], [-deep, 0.0]));
+            }
+            low = to;
+        }
+        socket.push(block([-half[0], half[0]], [low, half[1]], [-deep, 0.0]));
+    }
+    socket.push(block(
+        [-half[0] - 1.0, half[0] + 1.0],
+        [-half[1] - 1.0, half[1] + 1.0],
+        [-deep - 2.0, -deep],
+    ));
+    plug.push(block([-half[0], half[0]], [-half[1], half[1]], [deep, deep + 14.0]));
+    ([plug, socket], clearance)
 }
 
 /// Imports a pair of text STL files, and returns what the program says.
@@ -259,6 +332,11 @@ fn a_requested_axis_that_cannot_be_held_is_refused() {
 }
 
 #[test]
+fn a_shell_with_nine_pins_goes_about_their_block() {
+    inserts(&Studies::new(), "d-sub", d_sub(), [0.2, 0.2]);
+}
+
+#[test]
 fn a_bar_goes_through_a_plate() {
     let folder = Studies::new();
     let found = inserts(&folder, "through", through(), [0.2, 0.2]);
@@ -269,6 +347,33 @@ fn a_bar_goes_through_a_plate() {
     optimize(&[&["task", "import"], &again[..], &["--socket", &socket, "--out", &out]].concat())
         .fails(2, &["--depth-mm 300: plug and socket", "for at most 30 mm"]);
     assert!(!folder.dir("deep.toml").exists() && !folder.dir("deep.place.svg").exists());
+}
+
+/// A narrower nose of 3 mm ahead of the body, which guides the plug.
+#[test]
+fn depths_count_from_the_opening_of_a_plug_with_a_nose() {
+    let folder = Studies::new();
+    let plug = vec![
+        block([-2.5, 2.5], [-6.0, 6.0], [0.0, 3.0]),
+        block([-3.5, 3.5], [-8.0, 8.0], [3.0, 12.0]),
+        block([-5.0, 5.0], [-9.5, 9.5], [12.0, 30.0]),
+    ];
+    let mut socket = frame([14.0, 24.0], [7.2, 16.2], [-16.0, 0.0]);
+    socket.push(block([-7.0, 7.0], [-12.0, 12.0], [-18.0, -16.0]));
+    let found = inserts(&folder, "nosed", [plug, socket], [0.2, 0.2]);
+    assert!(
+        found["found"]
+            .to_string()
+            .contains("9.00 mm of the plug's 30.00 mm engage, behind a nose of 3.00 mm"),
+        "{found}"
+    );
+    assert!(found["found"].to_string().contains("z = 0 is on the socket's top"), "{found}");
+    for offset_mm in ["-0.7", "0.7"] {
+        assert_eq!(outcome(&folder, "nosed", offset_mm), "inserted", "{offset_mm}");
+    }
+    begins_inside(&folder, "nosed", 3.0);
+    let [plug, socket] = ["nosed-plug.stl", "nosed-socket.stl"].map(|name| folder.read(name));
+    import(&folder, "swapped", [&socket, &plug]).fails(2, &["are plug and socket swapped?"]);
 }
 
 /// Asserts that a start this much lower, mm, lets the approach end inside of the socket, and that the check names the
@@ -303,8 +408,6 @@ fn a_plug_starts_above_a_deep_lead_in() {
     assert!(found["found"].to_string().contains("2.00 mm below the socket's top"), "{found}");
     assert_eq!(outcome(&folder, "recess", "0.7"), "inserted");
     begins_inside(&folder, "recess", 4.0);
-    let [plug, socket] = ["recess-plug.stl", "recess-socket.stl"].map(|name| folder.read(name));
-    import(&folder, "swapped", [&socket, &plug]).fails(2, &["are plug and socket swapped?"]);
     // A sheet counts depths from the top, which can be measured.
     let text = folder.read("recess.toml");
     let depth = text.split("[success]").nth(1).and_then(|rest| rest.split("depth_mm = ").nth(1));
@@ -431,6 +534,39 @@ fn an_open_mesh_is_the_same_shape() {
         let [a, b] = [&drawn, &open].map(|found| found[key].as_f64().unwrap());
         assert!((a - b).abs() < 0.02, "{key}: {a} {b}");
     }
+}
+
+/// Returns the random pairs of these numbers that do not insert with their clearance.
+fn failing(numbers: std::ops::Range<u64>) -> Vec<String> {
+    let folder = Studies::new();
+    let fault = |number: u64| {
+        let (pair, clearance) = random(number);
+        let name = format!("random-{number}");
+        let ran = imported(&folder, &name, pair);
+        if ran.code != Some(0) {
+            return Some(format!("{name}: {}", ran.stderr));
+        }
+        let found = ran.json();
+        let off = in_task(&found, clearance)
+            .into_iter()
+            .any(|(axis, clearance)| (found[axis].as_f64().unwrap() - clearance).abs() > 0.03);
+        let ended = &found["check"]["nominal"]["outcome"];
+        (off || ended != "inserted").then(|| format!("{name}: {clearance:?} {ended} {found}"))
+    };
+    numbers.filter_map(fault).collect()
+}
+
+#[test]
+fn random_sockets_insert() {
+    let failing = failing(0..2);
+    assert!(failing.is_empty(), "{failing:#?}");
+}
+
+#[test]
+#[ignore = "takes minutes"]
+fn of_50_random_sockets_48_insert() {
+    let failing = failing(0..50);
+    assert!(failing.len() <= 2, "{failing:#?}");
 }
 
 #[test]

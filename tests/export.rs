@@ -193,6 +193,20 @@ fn every_format_of_a_studys_best_finger_is_written() {
     }
 }
 
+#[test]
+fn what_cannot_be_exported_is_told() {
+    for (words, parts) in [
+        ("", &["DIR"][..]),
+        ("--density 20", &["--direction"]),
+        ("--density 95 --direction 0", &["finray9.toml", "ribs.thickness_mm", "at most"]),
+        ("nowhere", &["nowhere"]),
+    ] {
+        let export = format!("export finger --format stl --out none.stl {words}");
+        optimize_line(&export).fails(2, parts);
+    }
+    assert!(!Path::new("none.stl").exists());
+}
+
 /// A straight extrusion: from x, y to x, y, mm.
 type Line = [f64; 4];
 

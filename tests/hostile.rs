@@ -22,6 +22,11 @@ fn paths(folder: &Path) -> Vec<PathBuf> {
     paths
 }
 
+/// Entries of a cache.
+fn cached(cache: &Path) -> Vec<PathBuf> {
+    paths(cache).iter().flat_map(|folder| paths(folder)).collect()
+}
+
 fn mkfifo(path: &Path) {
     assert!(Command::new("mkfifo").arg(path).status().expect("mkfifo").success());
 }
@@ -88,6 +93,26 @@ fn twenty_reports_at_once_all_succeed() {
         assert_eq!(end(report), (Some(0), String::new()));
     }
     assert_eq!(paths(&dir), before, "nothing is left beside");
+}
+
+#[test]
+fn a_huge_file_does_not_fill_the_memory_and_a_damaged_cache_is_measured_again() {
+    let studies = Studies::new();
+    let cache = studies.word("cache");
+    studies.study("s", 4, &["--cache", &cache]).succeeds();
+    let config = studies.dir("s/study.toml");
+    let text = read(&config);
+    fs::File::create(&config).unwrap().set_len(3 << 30).unwrap();
+    studies.resume("s").fails(1, &["study.toml", "is longer than"]);
+    fs::write(&config, &text).unwrap();
+    // The cache: its entries are then measured again.
+    let entries = cached(&studies.dir("cache"));
+    assert!(entries.len() >= 4, "evaluations and walks");
+    for entry in &entries {
+        fs::File::create(entry).unwrap().set_len(3 << 30).unwrap();
+    }
+    studies.study("t", 4, &["--cache", &cache]).succeeds();
+    assert_eq!(studies.journal("t"), studies.journal("s"));
 }
 
 /// A running study of which `interfere` changes the journal or its folder: exit code and message.

@@ -70,7 +70,8 @@ fn a_fault_of_the_columns_is_a_remark_and_logs_that_tell_nothing_are_an_error() 
     let log = folder.read("30-1.csv");
     let header = "log,infill_density_percent,infill_direction_deg,offset_mm,outcome";
     let runs = folder.file("one.csv", format!("{header}\na.csv,30,0,0,inserted\n"));
-    let (priors, cell) = (folder.file("one.toml", FRICTION), folder.word("cell.toml"));
+    let priors = folder.file("one.toml", FRICTION);
+    let (cell, page) = (folder.word("cell.toml"), folder.word("page.html"));
     let identify = format!("identify --task usb --runs {runs} --priors {priors} --robot servo");
     let forces = ["fx_n", "fy_n", "fz_n"];
     folder.file("a.csv", scaled(&log, &["target_x_mm", "target_y_mm", "target_z_mm"], 1e-3));
@@ -79,10 +80,16 @@ fn a_fault_of_the_columns_is_a_remark_and_logs_that_tell_nothing_are_an_error() 
     let of = |remark: &Value| remark["serious"] == true && remark.to_string().contains(cause);
     assert!(found["remarks"].as_array().unwrap().iter().any(of), "{found}");
     optimize_line(&identify).says_in_any_lines(cause);
+    let refused = |code: i32, words: &[&str]| {
+        optimize_line(&format!("{identify} --out {cell} --report {page}")).fails(code, words);
+        assert!(!folder.dir("cell.toml").exists() && !folder.dir("page.html").exists());
+    };
     for (by, cause) in [(-1.0, "`force_sign`"), (1.0 / 9.80665, "another unit than newtons")] {
         folder.file("a.csv", scaled(&log, &forces, by));
-        let nothing = "these logs determine no parameter of the cell";
-        optimize_line(&format!("{identify} --out {cell}")).fails(1, &[nothing, cause]);
-        assert!(!folder.dir("cell.toml").exists());
+        refused(1, &["these logs determine no parameter of the cell", cause]);
     }
+    let (most, _) = log.rsplit_once(',').unwrap();
+    folder.file("a.csv", format!("{most},NaN\n"));
+    let line = format!("a.csv: line {}: ", log.lines().count());
+    refused(2, &[&line, "`NaN` is not a finite number"]);
 }

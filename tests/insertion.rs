@@ -11,16 +11,19 @@ use contact::{Engine, World};
 use finger_opt::command::parse;
 use finger_opt::commands::evaluate;
 use finger_opt::context::Context;
-use input::shipped::{FINGERS, STIFFNESS, Shipped, TASKS};
+use finray::printed::PrintedFinger;
+use input::shipped::{FINGERS, STIFFNESS, Shipped, TASKS, UNCERTAINTIES};
 use input::units::{DEG, MM};
+use insertion::evaluation::robustness::{self, Plan};
 use insertion::evaluation::tolerance::{Search, evaluate};
+use insertion::evaluation::uncertainty::Uncertainty;
 use insertion::finger::Finger;
 use insertion::finger::file::FingerFile;
 use insertion::finger::model::{ComputedFingers, FingerSource};
 use insertion::outcome::{FailureClass, Outcome};
 use insertion::space::Design;
 use insertion::stiffness;
-use insertion::surrogate::Prediction;
+use insertion::surrogate::{self, Prediction};
 use insertion::task::finger::Coupling;
 use insertion::task::{PadTorsion, Task};
 use insertion::trial::cell;
@@ -259,6 +262,47 @@ fn a_part_low_in_the_gripper_is_touched_that_much_earlier() {
     };
     let lower = touch(0.0) - touch(0.3 * MM);
     assert!((lower - 0.3).abs() < 0.05, "{lower} mm");
+}
+
+/// Under drawn errors the finger with the wider window inserts more often.
+#[test]
+fn the_success_rate_follows_the_window() {
+    let mut typical = Uncertainty::parse(UNCERTAINTIES[0].text, "typical").unwrap();
+    typical.success.trials = 40;
+    let plan = Plan::new(&typical, 0, true, false);
+    let rig = direct("usb");
+    let rate = |compliance: f64| {
+        let finger = finger(compliance, 52.4);
+        let predicted = Prediction::exact(finger.compliance, finger.assembly);
+        let found =
+            robustness::evaluate(&rig, Grasp::of(&finger), &predicted, Search::Strides, &plan, &[]);
+        let success = found.success.unwrap();
+        assert_eq!(success.diverged, 0);
+        (found.window.range_mm(), success.rate().unwrap())
+    };
+    let (soft, stiff) = (rate(1.2), rate(3.84));
+    assert!(soft.0 > stiff.0 + 1.0 && soft.1 > stiff.1 + 0.05, "{soft:?} and {stiff:?}");
+}
+
+/// Errors cost range: a robust range lies below the range without them, where the ends of the
+/// window are firm (those of usb are not: `docs/notes/simulation.md`).
+#[test]
+fn a_robust_range_is_smaller_than_the_range() {
+    let mut typical = Uncertainty::parse(UNCERTAINTIES[0].text, "typical").unwrap();
+    typical.robust.samples = 6;
+    typical.robust.search = Search::Strides;
+    let plan = Plan::new(&typical, 0, false, true);
+    let measured = stiffness::parse(STIFFNESS[0].text, "measured").unwrap();
+    let printed = PrintedFinger::parse(FINGERS[0].text, FINGERS[0].file).unwrap();
+    let predicted = surrogate::fit(&measured, &printed).unwrap().predict([20.0, 10.0]).unwrap();
+    let finger = Finger::new(predicted.compliance.mean, predicted.assembly.mean);
+    let (rig, grasp) = (direct("ket12"), Grasp::of(&finger));
+    let found = robustness::evaluate(&rig, grasp, &predicted, Search::Strides, &plan, &[]);
+    let robust = found.robust.unwrap();
+    assert_eq!((robust.ranges_mm.len(), robust.diverged), (6, 0));
+    assert!(robust.sd_mm() > 0.0);
+    let value = robust.value_mm.unwrap();
+    assert!(value > 0.0 && value < found.window.range_mm(), "{value} of {:?}", found.window);
 }
 
 #[test]

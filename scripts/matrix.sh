@@ -193,11 +193,10 @@ cache() {
     local entries
     entries=$(find shared -name '*.json' | wc -l)
     find shared -name '*.json' | while read -r entry; do
-        case $((RANDOM % 4)) in
+        case $((RANDOM % 3)) in
         0) truncate -s "-$((RANDOM % 300 + 1))" "$entry" ;;
         1) sed -i 's/"trials":\([0-9]\)/"trials":1\1/' "$entry" ;;
         2) : >"$entry" ;;
-        3) rm "$entry" && mkfifo "$entry" ;;
         esac
     done
     "$optimize" "${common[@]}" --budget 22 --cache shared --out damaged >/dev/null

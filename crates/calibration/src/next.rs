@@ -172,7 +172,7 @@ pub fn advise(
         let Some(&Gain { column, choice_mm, use_mm }) = first else { break };
         let small = |gain: &Gain| gain.choice_mm.max(gain.use_mm) < cost_mm;
         stop &= !next.is_empty() || gains.iter().all(small);
-        let [mean_mm, low_mm, high_mm] = given.expected(column);
+        let [mean_mm, low_mm, high_mm] = expected[column];
         let expected_mm = mean_mm.max(0.0);
         let tried: Vec<StiffnessPoint> =
             printed.iter().map(|&column| bench.places[all[column]]).collect();

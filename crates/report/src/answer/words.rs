@@ -99,12 +99,16 @@ const REMEDIES: [&str; 5] = [
     "Check the grip's force and friction against the force that the insertion needs",
 ];
 
-/// Returns advice for a nominal start that ends with this outcome, as a sentence without a full stop. A plug that misses
-/// is pressed on the rim, which stops a robot, too.
-pub fn remedy(nominal: Outcome, robot_stopped: bool) -> &'static str {
-    match robot_stopped && nominal != Outcome::Failed(FailureClass::PlugMissed) {
-        true => STOP_REMEDY,
-        false => REMEDIES[usize::from(nominal.failure().unwrap_or(0))],
+/// Returns advice for a nominal start that ends with this outcome, as sentences without the last full stop. A plug that
+/// misses is pressed on the rim, which stops a robot, too; a robot with a low limit stops before it finds the opening.
+pub fn remedy(nominal: Outcome, robot_stopped: bool) -> String {
+    let own = REMEDIES[usize::from(nominal.failure().unwrap_or(0))];
+    match (robot_stopped, nominal) {
+        (true, Outcome::Failed(FailureClass::PlugMissed)) => {
+            format!("{own}. {STOP_REMEDY}")
+        }
+        (true, _) => STOP_REMEDY.to_owned(),
+        (false, _) => own.to_owned(),
     }
 }
 

@@ -440,7 +440,7 @@ mod tests {
     #[test]
     fn the_best_measured_finger_has_the_largest_mean_range() {
         let [a, b, c] = [10.0, 20.0, 30.0].map(|density| Design::infill(density, 0.0));
-        let mut lines = [(&a, 5.0, false), (&b, 7.0, false), (&b, 3.0, false), (&c, 5.0, true)];
+        let mut lines = [(&a, 5.0, false), (&b, 7.0, false), (&b, 2.0, false), (&c, 5.0, true)];
         for _ in 0..2 {
             let best = BestMeasured::of(lines.iter().copied()).unwrap();
             assert_eq!((&best.design, best.range_mm, best.at_least), (&a, 5.0, false));

@@ -232,18 +232,21 @@ fn stops_that_end_most_trials_are_the_headline() {
 
 #[test]
 fn a_finger_whose_repeats_fail_at_the_nominal_start_is_not_usable() {
-    // The second ties with it and was not repeated.
+    // Two that tie: without a firm window, no tie is as good as another.
     let mut study = record(vec![walked(0, [20.0, 20.0]), walked(1, [22.0, 20.0])]);
-    let recorded = study.evaluations[0].clone();
+    study.firm_values = BTreeMap::from([(0, 0.0), (1, 0.0)]);
     for (window, usable) in [(Some(FirmWindow::default()), true), (None, false)] {
-        let firm = vec![FirmResult { window, trials: 12 }];
-        study.walked = vec![Walked { recorded: recorded.clone(), firm, by_ribs: None }];
+        let walked = |recorded: &Recorded| {
+            let firm = vec![FirmResult { window, trials: 12 }];
+            Walked { recorded: recorded.clone(), firm, by_ribs: None }
+        };
+        study.walked = study.evaluations.iter().map(walked).collect();
         let answer = crate::answer::Answer::of(&study);
-        let headline = answer.headline();
-        assert_eq!(headline.starts_with("Not usable as it is: with slightly varied "), !usable);
-        assert_eq!(answer.verdict_key() == "not_repeatable", !usable, "{headline}");
-        assert_eq!(headline.ends_with("; best finger: 20 % infill at 20°"), !usable, "{headline}");
-        assert!(html(&study).contains(&format!("<h1>{headline}</h1>")));
+        // The headline names the best published finger.
+        let text = crate::answer::expectation(&answer);
+        assert_eq!(text.starts_with("Not usable as it is: with slightly varied "), !usable);
+        assert_eq!(answer.verdict_key() == "not_repeatable", !usable, "{text}");
+        assert_eq!(matches!(answer.verdict, crate::answer::Verdict::Any { .. }), usable, "{text}");
     }
 }
 

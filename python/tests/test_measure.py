@@ -65,6 +65,17 @@ def test_a_trial_and_its_course(command_json):
     assert len(coarse.time_s) == pytest.approx(n / 10, abs=2)
 
 
+def test_the_next_print_is_that_of_the_command_line(command_json, tmp_path, fake):
+    bench = tmp_path / "bench.csv"
+    bench.write_text("task,infill_density_percent,infill_direction_deg,range_mm\nusb,20,10,5.6\nusb,30,20,6.1\n")
+    few = {"task": "usb", "simulations": 24, "samples": 20}
+    there = command_json("next", "--measurements", str(bench), "--engine", "fake",
+                         *(word for key, value in few.items() for word in (f"--{key}", str(value))))
+    here = fo.next_print(bench, **few, **fake)
+    assert here.to_dict() == there
+    assert here.use_now is not None and here.use_now.range_mm == 6.1 and not here.reliable
+
+
 def test_a_capture_map_is_that_of_the_command_line(command_json, fake):
     words = ("map", "--task", "usb", "--density", "20", "--direction", "10", "--engine", "fake")
     there = command_json(*words, "--axes", "y,yaw")

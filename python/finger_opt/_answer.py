@@ -114,6 +114,17 @@ class ExcessForce(Result):
 
 
 @dataclass(frozen=True, repr=False)
+class LeftOut(Result):
+    """Best design, whose contact force exceeds ``limit_n``; a tied one is recommended in its place."""
+
+    values: dict[str, float]
+    evaluation: int
+    peak_force_n: float
+    limit_n: float
+    sentence: str
+
+
+@dataclass(frozen=True, repr=False)
 class NextStep(Result):
     """Recommended next command, and the reason."""
 
@@ -150,6 +161,7 @@ class Answer(Result):
     #: Values of the finger by key.
     finger: dict[str, float] | None
     force: ExcessForce | None
+    left_out: LeftOut | None
     trust: Trust
     rank_correlations: tuple[RankCorrelation, ...]
     start: StartAdvice | None

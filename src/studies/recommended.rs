@@ -1,7 +1,7 @@
 //! Recommendation and answer of a study as JSON.
 
 use insertion::{Measure, Objectives};
-use report::answer::{Answer, Ties, Trust, command, expectation, lines};
+use report::answer::{Answer, LeftOut, Ties, Trust, command, expectation, lines};
 use serde_json::{Map, Value, json};
 use std::path::Path;
 use study::{BenchPrediction, ByRibs, StudyRecord};
@@ -135,6 +135,7 @@ pub fn advice(answer: &Answer, dir: &Path) -> Value {
         "use_now": answer.use_now(),
         "finger": answer.verdict.finger(),
         "force": force(answer),
+        "left_out": left_out(answer),
         "trust": trust(&answer.trust),
         "rank_correlations": answer.rank_correlations,
         "start": one.and_then(|found| found.start.as_ref()),
@@ -152,6 +153,21 @@ fn force(answer: &Answer) -> Value {
     let mut json = json!(excess);
     json["warning"] = text.into();
     json
+}
+
+/// Returns the best design, in whose place a tied one is recommended; null if there is none.
+fn left_out(answer: &Answer) -> Value {
+    let (Some(left_out), Some((_, text))) = (&answer.left_out, lines::left_out(answer)) else {
+        return Value::Null;
+    };
+    let LeftOut { design, force } = left_out;
+    json!({
+        "values": design.design,
+        "evaluation": design.index,
+        "peak_force_n": force.peak_force_n,
+        "limit_n": force.limit_n,
+        "sentence": text,
+    })
 }
 
 fn trust(trust: &Trust) -> Value {

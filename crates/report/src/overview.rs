@@ -33,6 +33,7 @@ pub(super) fn screen(answer: &Answer, files: &PageFiles) -> Markup {
             @if let Some((_, text)) = lines::widest(answer).filter(|_| answer.record.on_bench.is_none()) {
                 p.muted { "Widest in the search: " (explained(&text)) "." }
             }
+            @if let Some((_, text)) = lines::left_out(answer) { p.warn { "Left out: " (text) "." } }
             @for (_, text) in lines::caveats(answer) { p.warn { (text) } }
         }
         div.first {

@@ -1,7 +1,7 @@
 //! Lines of an answer, each with a name and a text, for the terminal and the page.
 
 use super::words::{self, ends_mm, evaluated, interval, mm, span};
-use super::{Answer, Front, OnTask, Recommended, Spread, Ties, Verdict};
+use super::{Answer, Front, LeftOut, OnTask, Recommended, Spread, Ties, Verdict};
 use ask_tell::statistics::mean;
 use calibration::rank_correlation::{Order, RankCorrelation};
 use calibration::verdict::coverage;
@@ -89,8 +89,18 @@ pub fn simulated(answer: &Answer, found: &Recommended) -> Vec<Line> {
     let limits = limits.map(|text| line("constraint", text));
     let tied = found.ties.iter().map(|ties| tied(answer, ties));
     let safe = found.ties.iter().filter_map(safe);
-    let why = widest(answer);
+    let why = left_out(answer).into_iter().chain(widest(answer));
     found.tasks.iter().flat_map(of_task).chain(limits).chain(why).chain(tied).chain(safe).collect()
+}
+
+/// Returns the best design with its force and the limit, if a tied one is recommended in its place.
+pub fn left_out(answer: &Answer) -> Option<Line> {
+    let LeftOut { design, force } = answer.left_out.as_ref()?;
+    let record = answer.record;
+    let value = record.firm_values.get(&design.index).copied().or_else(|| design.value())?;
+    let value = record.config.objective.first().show(value);
+    let force = force.words(&record.config.robot);
+    Some(line("left out", format!("{}, {value}: {force}", words::design(&design.design))))
 }
 
 /// Returns the best design of the search with its value in the repeats (with varied friction, start and time step), if
@@ -98,8 +108,9 @@ pub fn simulated(answer: &Answer, found: &Recommended) -> Vec<Line> {
 pub fn widest(answer: &Answer) -> Option<Line> {
     let found = answer.recommended.as_ref()?;
     let (measure, _) = found.objective.filter(|(measure, _)| measure.unit() == "mm")?;
-    let named =
-        [Some(found.design), answer.design_to_print()].map(|named| named.map(|named| named.index));
+    let left_out = answer.left_out.as_ref().map(|left_out| left_out.design);
+    let named = [Some(found.design), answer.design_to_print(), left_out];
+    let named = named.map(|named| named.map(|named| named.index));
     let best = answer.record.best().filter(|best| !named.contains(&Some(best.index)))?;
     let repeated = measure.show(*answer.record.firm_values.get(&best.index)?);
     let (design, searched) = (words::design(&best.design), measure.show(best.value()?));
@@ -149,17 +160,11 @@ pub fn first(answer: &Answer) -> Option<Line> {
 /// Returns a contact force above the limit of connector or robot, with a remedy.
 pub fn force(answer: &Answer) -> Option<Line> {
     let excess = answer.force.as_ref()?;
-    let ties = answer.recommended.as_ref().and_then(|found| found.ties.as_ref());
-    let safe = ties.and_then(|ties| ties.safe.as_ref()).filter(|safe| {
-        answer.verdict.finger() != Some(&safe.design.design) && answer.record.on_bench.is_none()
-    });
-    let remedy = match safe {
-        Some(safe) => format!("take {}, which ties", words::design(&safe.design.design)),
+    let acceptable = acceptable(answer);
+    let remedy = match answer.record.on_bench {
         // Studies with measurements do not support constraints.
-        None if answer.record.on_bench.is_some() => {
-            format!("try optimize task tune FILE --max-force-n {:.0}", acceptable(answer))
-        }
-        None => format!("try --constraint 'peak-force<={:.0}'", acceptable(answer)),
+        Some(_) => format!("try optimize task tune FILE --max-force-n {acceptable:.0}"),
+        None => format!("try --constraint 'peak-force<={acceptable:.0}'"),
     };
     Some(line("force", format!("{}; {remedy}", excess.words(&answer.record.config.robot))))
 }

@@ -20,7 +20,7 @@ use study::{BenchPrediction, FINGER, Recorded, StudyConfig, StudyRecord, Volume,
 
 pub use force::ExcessForce;
 use recommended::firm_range_mm;
-pub use recommended::{OnTask, Recommended};
+pub use recommended::{LeftOut, OnTask, Recommended};
 pub use robots::RobotWindow;
 pub use start::Start;
 pub use ties::{SafeChoice, Spread, Ties};
@@ -43,6 +43,8 @@ pub struct Answer<'a> {
     /// The recommended design, or the first of a front; `None` if none has a value and satisfies all
     /// constraints.
     pub recommended: Option<Recommended<'a>>,
+    /// The best design, if its contact force exceeds a limit and a tied one is recommended in its place.
+    pub left_out: Option<LeftOut<'a>>,
     /// Confirmed designs (walked step by step and repeated at their ends), best first, each with
     /// its firm range, mm, aggregated over the tasks.
     pub walked: Vec<(&'a Recorded, f64)>,
@@ -80,13 +82,17 @@ impl<'a> Answer<'a> {
             (None, [task]) => trust::published(task).into_iter().map(|(found, _)| found).collect(),
             (None, _) => Vec::new(),
         };
+        let best = record.recommended().map(|best| Recommended::of(record, best, &measured));
+        let (recommended, left_out) =
+            best.map(|best| best.within_limits(record, &measured)).unzip();
         let mut answer = Answer {
             record,
             verdict: Verdict::NoneFeasible,
             trust: Trust::of(record, None),
             designs: current.len(),
             feasible: current.iter().filter(|recorded| recorded.feasible().is_some()).count(),
-            recommended: Recommended::of(record, &measured),
+            recommended,
+            left_out: left_out.flatten(),
             walked: record.walked.iter().map(walked).collect(),
             front: config.objective.single().is_none().then(front),
             spread_mm: record.spread_mm(),

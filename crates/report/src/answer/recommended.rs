@@ -1,9 +1,10 @@
 //! The recommended design, its windows and its ties.
 
+use super::force::ExcessForce;
 use super::start::Start;
 use super::ties::Ties;
 use super::trust::MeasuredFinger;
-use super::words;
+use super::{unsteady, words};
 use insertion::{Evaluation, FirmResult, Measure};
 use study::{ByRibs, Recorded, StudyRecord, Walked};
 
@@ -29,8 +30,17 @@ pub struct Recommended<'a> {
     pub by_ribs: Option<&'a ByRibs>,
     /// Position of the start in the firm window or, without one, in the window; `None` for several tasks.
     pub start: Option<Start>,
-    /// Designs that tie with the recommended one; `None` for a Pareto front.
+    /// Designs that tie with the recommended one, or with the best one that is left out; `None` for a Pareto front.
     pub ties: Option<Ties<'a>>,
+}
+
+/// Best design, in whose place a tied one is recommended.
+#[derive(Debug, Clone)]
+pub struct LeftOut<'a> {
+    /// The design.
+    pub design: &'a Recorded,
+    /// Its contact force, which exceeds a limit.
+    pub force: ExcessForce,
 }
 
 /// Recommended design on one task.
@@ -45,10 +55,16 @@ pub struct OnTask<'a> {
 }
 
 impl<'a> Recommended<'a> {
-    pub(super) fn of(record: &'a StudyRecord, measured: &[MeasuredFinger]) -> Option<Self> {
-        let (config, found) = (&record.config, record.recommendation());
-        let design = found.or_else(|| record.best())?;
-        let walked = record.walked.first().filter(|_| found.is_some());
+    pub(super) fn of(
+        record: &'a StudyRecord,
+        evaluated: &'a Recorded,
+        measured: &[MeasuredFinger],
+    ) -> Self {
+        let (config, index) = (&record.config, evaluated.index);
+        let single = config.objective.single();
+        let is_walked = |walked: &&Walked| single.is_some() && walked.recorded.index == index;
+        let walked = record.walked.iter().find(is_walked);
+        let design = walked.map_or(evaluated, |walked| &walked.recorded);
         let firm = walked.map(|walked| &walked.firm[..]);
         let windows: Option<Vec<[f64; 2]>> =
             firm.and_then(|firm| firm.iter().map(FirmResult::window_mm).collect());
@@ -60,9 +76,9 @@ impl<'a> Recommended<'a> {
         let window_mm = intersection(design.tasks.iter().map(|task| words::ends_mm(&task.window)));
         let firm_window_mm = windows.map(|windows| intersection(windows.into_iter()));
         let start = Start::of(firm_window_mm.unwrap_or(window_mm));
-        Some(Recommended {
+        Recommended {
             design,
-            objective: config.objective.single().zip(design.value()),
+            objective: single.zip(design.value()),
             range_mm: record.measure(design, Measure::Range),
             window_mm,
             firm_range_mm: walked.map(|walked| firm_range_mm(record, walked)),
@@ -70,8 +86,28 @@ impl<'a> Recommended<'a> {
             tasks: config.tasks().zip(&design.tasks).enumerate().map(on).collect(),
             by_ribs: walked.and_then(|walked| walked.by_ribs.as_ref()),
             start: start.filter(|_| record.config.tasks.len() == 1),
-            ties: found.map(|found| Ties::of(record, found.index, measured)),
-        })
+            ties: single.map(|_| Ties::of(record, index, measured)),
+        }
+    }
+
+    /// Returns the safe choice in place of a design whose contact force exceeds a limit, and that design. Where any of the
+    /// ties will do, the safe choice is named already.
+    pub(super) fn within_limits(
+        self,
+        record: &'a StudyRecord,
+        measured: &[MeasuredFinger],
+    ) -> (Self, Option<LeftOut<'a>>) {
+        let applies = record.on_bench.is_none() && unsteady(record, self.design.index).is_none();
+        let ties = self.ties.as_ref().filter(|ties| applies && !ties.any());
+        let safe = ties.and_then(|ties| ties.safe.as_ref());
+        match safe.zip(ExcessForce::of(record, &self.design.tasks())) {
+            Some((safe, force)) => {
+                let safe = Self::of(record, safe.design, measured);
+                let left_out = LeftOut { design: self.design, force };
+                (Recommended { ties: self.ties, ..safe }, Some(left_out))
+            }
+            None => (self, None),
+        }
     }
 }
 

@@ -73,7 +73,15 @@ impl Spread<'_> {
     }
 }
 
+/// Share of the space near tied designs ([`Ties::share`]) from which on any of them is recommended.
+const MIN_SHARE: f64 = 0.5;
+
 impl<'a> Ties<'a> {
+    /// Returns whether any of the designs is recommended, by default the safe choice.
+    pub(super) fn any(&self) -> bool {
+        self.safe.is_some() && self.share >= MIN_SHARE
+    }
+
     pub(super) fn of(record: &'a StudyRecord, index: u64, measured: &[MeasuredFinger]) -> Self {
         let losses = record.losses(index);
         let narrow = narrow(record, index, &losses);
@@ -208,6 +216,34 @@ mod tests {
             lines::safe(&ties).unwrap().0
         };
         assert_eq!([named(Some(4.7)), named(None)], ["safe choice", "least force"]);
+    }
+
+    #[test]
+    fn a_tied_finger_within_the_force_limit_replaces_the_best() {
+        let mut record = fixture();
+        record.config.indifference_mm = 0.7;
+        // Beside the best one, so that not most of the space ties.
+        record.evaluations[2].design = insertion::space::Design::infill(12.0, 7.0);
+        let named = |record: &StudyRecord| {
+            let answer = Answer::of(record);
+            let printed = answer.design_to_print().unwrap();
+            assert_eq!(answer.verdict, Verdict::Print(&printed.design));
+            assert_eq!(answer.recommended.as_ref().unwrap().design.index, printed.index);
+            let left_out = answer.left_out.as_ref().map(|left_out| left_out.design.index);
+            (printed.index, left_out, answer.force.is_some())
+        };
+        // 9.8 N; the tied ones have 9.2 and 8.9 N.
+        assert_eq!(named(&record), (4, None, false));
+        record.limits.connectors = vec![Some(9.0)];
+        assert_eq!(named(&record), (9, Some(4), false));
+        let (_, text) = lines::left_out(&Answer::of(&record)).unwrap();
+        assert!(
+            text.contains("6°, 6.7 mm: up to 10 N on usb: its connector withstands 9 N"),
+            "{text}"
+        );
+        // No tied finger is gentle enough.
+        record.limits.connectors = vec![Some(5.0)];
+        assert_eq!(named(&record), (4, None, true));
     }
 
     #[test]

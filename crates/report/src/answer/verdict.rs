@@ -6,9 +6,6 @@ use insertion::outcome::stop_words;
 use insertion::{Design, Evaluation, Measure};
 use study::{BenchFinger, Recorded, StudyRecord, nearest};
 
-/// Share of the space near tied designs ([`Ties::share`]) from which on any of them is recommended.
-const MIN_SHARE: f64 = 0.5;
-
 /// Recommended action.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Verdict<'a> {
@@ -71,7 +68,7 @@ impl<'a> Verdict<'a> {
         };
         let of = ties.designs.len();
         match &ties.safe {
-            Some(safe) if ties.share >= MIN_SHARE => Verdict::Any { safe: &safe.design.design, of },
+            Some(safe) if ties.any() => Verdict::Any { safe: &safe.design.design, of },
             _ => Verdict::Print(first),
         }
     }

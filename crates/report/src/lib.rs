@@ -5,7 +5,6 @@ mod bar;
 mod bench;
 pub mod calibrate;
 mod chart;
-pub mod compare;
 mod convergence;
 mod elements;
 mod explore;

@@ -16,7 +16,7 @@ use calibration::experiments::Experiment;
 use calibration::simulation::Simulation;
 use calibration::subject::Subject;
 use input::shipped::{PRIORS, Source};
-use insertion::{Design, Priors, Template};
+use insertion::{Priors, Template};
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -86,12 +86,10 @@ impl CalibrationRequest {
         usize::from(self.effort.completed(None).simulations)
     }
 
-    /// Simulates the tasks and reads their measurements; `more` are fingers to predict in addition to those of the
-    /// space.
+    /// Simulates the tasks and reads their measurements.
     pub fn prepare<'a>(
         &self,
         (bench, measurements): (&BenchRequest, &Source),
-        more: &[Design],
         context: &Context<'a>,
     ) -> Result<Prepared<'a>, Failure> {
         context.cancel_on_interrupt()?;
@@ -104,7 +102,7 @@ impl CalibrationRequest {
         let (setup, priors, simulations) = (&setup, &priors, usize::from(effort.simulations));
         let (seed, cache) = (self.seed, self.cache.folder(setup));
         let calibration = CalibrationContext { setup, priors, simulations, seed, cache, context };
-        let (subjects, layout) = calibration.subjects(&measurements.file, &experiments, more)?;
+        let (subjects, layout) = calibration.subjects(&measurements.file, &experiments)?;
         Ok(Prepared { subjects, layout, settings: settings(effort, self.seed, context.stop) })
     }
 }
@@ -137,7 +135,6 @@ impl<'a> CalibrationContext<'a> {
         &self,
         measurements: &str,
         experiments: &[Experiment],
-        more: &[Design],
     ) -> Result<(Vec<Subject>, Layout), Failure> {
         let Setup { evaluator, space, .. } = self.setup;
         let subject = |template: &'a Template| {
@@ -151,7 +148,7 @@ impl<'a> CalibrationContext<'a> {
             let simulation =
                 Simulation::new(evaluator, template, parameters, cache, self.context.stop);
             let emulator = Emulator::new(&simulation, space, count, self.seed, &done)?;
-            Subject::new(&simulation, space, emulator, experiments, more)
+            Subject::new(&simulation, space, emulator, experiments)
         };
         let subjects = evaluator.templates.iter().map(subject).collect::<Result<Vec<_>, _>>();
         self.context.check().map_err(|failure| match self.cache {

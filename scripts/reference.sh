@@ -100,7 +100,7 @@ check() {
 windows() {
     "$lab" check --convergence > "$reference/convergence.txt" ||
         echo "a window changes with the step: $reference/convergence.txt" >&2
-    "$lab" check --searches --fingers all > "$reference/window_search.txt" ||
+    "$lab" check --searches --all-fingers > "$reference/window_search.txt" ||
         echo "the searches differ: $reference/window_search.txt" >&2
     record windows "$reference"/{convergence,window_search}.txt
 }

@@ -455,8 +455,6 @@ fn the_inputs_that_matter_for_the_window_are_ranked() {
     let factors = sobol["factors"].as_array().unwrap();
     assert_eq!(factors.len(), 2);
     assert!(factors.iter().map(share).sum::<f64>() > 0.5, "{sobol}");
-    fake("sensitivity --task usb --objective slip")
-        .fails(2, &["has no value where nothing inserts"]);
 }
 
 #[test]
@@ -472,9 +470,6 @@ fn a_finger_is_computed_from_its_ribs() {
         assert!(of("coupling_yz") > 0.5 && of("tilting_nm_per_rad") > 1.0, "{json}");
     }
     assert!(studies.read("finger.svg").contains("</svg>"));
-    optimize_line(&format!("{drawn} --load-n 0,20")).succeeds();
-    assert!(studies.read("finger.svg").contains("20.0 N in z"));
-    optimize_line(&format!("{infill} --load-n 5")).fails(2, &["--load-n", "for example -5,0"]);
     optimize_line(infill).says(&["pad and roof"]);
     optimize_line("finger --density 0.2 --direction 0")
         .fails(2, &["--density: is 0.2", "1 .. 100"]);

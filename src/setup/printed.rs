@@ -62,15 +62,11 @@ impl PrintRequest {
     /// # Errors
     /// If a file is invalid, the study recommends no design, or the finger cannot be built.
     pub fn chosen(&self) -> Result<PrintChoice, Failure> {
-        let InfillRequest { density, direction } = self.infill;
         let (design, file, of_study, notes) = match &self.dir {
             Some(dir) => best(dir)?,
-            None if density.is_none() || direction.is_none() => {
-                let problem = "give DIR, the folder of a study, or --density and --direction";
-                return Err(Failure::usage(problem));
-            }
             None => {
-                let [density, direction] = self.infill.required()?;
+                let [density, direction] =
+                    self.infill.required(", or DIR, the folder of a study")?;
                 (Design::infill(density, direction), None, None, Vec::new())
             }
         };

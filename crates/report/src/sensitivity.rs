@@ -1,4 +1,4 @@
-//! Sensitivity of a measure to its inputs: table, JSON and chart.
+//! Sensitivity of the range to its inputs: table, JSON and chart.
 
 use super::chart::{Area, DrawResult, HPos, VPos, render, rows, text_style};
 use super::marks::{bar, label, line};
@@ -15,8 +15,6 @@ use serde::Serialize;
 pub struct SensitivityResult {
     /// Name of the task.
     pub task: String,
-    /// Name of the measure whose variance is analysed.
-    pub objective: String,
     /// Number of simulated windows.
     pub evaluations: usize,
     /// Number of windows whose nominal start diverged; they count as 0.
@@ -68,11 +66,11 @@ pub fn text(found: &SensitivityResult) -> String {
         .map(|(count, what)| format!("; {count} {what} at the nominal start and count as 0"))
         .collect();
     format!(
-        "{} of {}: inputs by influence\n{table}\
+        "range of {}: inputs by influence\n{table}\
          total: share of the variance that remains if all others are fixed (total index)\n\
          alone: share that vanishes if this one is fixed (first-order index)\n\
          {} windows simulated{zeros}\n",
-        found.objective, found.task, found.evaluations
+        found.task, found.evaluations
     )
 }
 
@@ -98,7 +96,7 @@ fn draw(area: &Area<'_>, found: &SensitivityResult) -> DrawResult {
     let factors = &found.factors;
     let highest = |factor: &Factor| factor.indices.total_high.max(factor.indices.total);
     let largest = factors.iter().map(highest).fold(1e-9, f64::max);
-    let title = format!("{} of {}: shares of the variance", found.objective, found.task);
+    let title = format!("range of {}: shares of the variance", found.task);
     let note =
         "share of the variance; light bar: total index, line: its 95 % interval; dark: first-order";
     let mut chart = rows(area, &title, (note, 0.0..1.1 * largest), factors.len(), LEFT)?;

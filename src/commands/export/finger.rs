@@ -70,20 +70,15 @@ impl command::Request for Request {
         chosen.notes.iter().for_each(|note| context.note(note));
         let geometry = &chosen.geometry;
         let (out, title) = (&self.out, export::title(geometry));
-        let failure = |error: &dyn Display| Failure::running(format!("{}: {error}", out.display()));
-        let project = |bytes: Result<Vec<u8>, PrismError>| -> Result<(), Failure> {
-            Ok(write_file(out, &bytes.map_err(|error| failure(&error))?)?)
-        };
         match self.format()? {
             Format::Stl => {
                 write_file(out, &closed(Prism::finger(geometry), geometry)?.stl(&title))?
             }
             Format::ThreeMf => {
-                let bytes = closed(Prism::finger(geometry), geometry)?.three_mf(&title);
-                write_file(out, &bytes.map_err(|error| failure(&error))?)?;
+                save(out, closed(Prism::finger(geometry), geometry)?.three_mf(&title))?;
             }
-            Format::PrusaslicerProject => project(slicer::prusaslicer_project(geometry))?,
-            Format::OrcaslicerProject => project(slicer::orcaslicer_project(geometry))?,
+            Format::PrusaslicerProject => save(out, slicer::prusaslicer_project(geometry))?,
+            Format::OrcaslicerProject => save(out, slicer::orcaslicer_project(geometry))?,
             Format::Dxf => write_file(out, &profile::dxf(geometry, &title))?,
             Format::Sheet => write_file(out, &draw_sheet(self.finger.dir.as_deref(), &chosen)?)?,
         }
@@ -130,6 +125,12 @@ impl Format {
             Format::Sheet => &["html", "htm"],
         }
     }
+}
+
+/// Writes the bytes of a file.
+fn save(out: &Path, bytes: Result<Vec<u8>, impl Display>) -> Result<(), Failure> {
+    let bytes = bytes.map_err(|error| Failure::running(format!("{}: {error}", out.display())))?;
+    Ok(write_file(out, &bytes)?)
 }
 
 /// Adds the finger file to the error of a surface that cannot be closed.

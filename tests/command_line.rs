@@ -332,7 +332,6 @@ fn a_design_outside_the_space_is_answered_with_its_bounds() {
     ] {
         let design = format!("--density {density} --direction {direction}");
         fake(&format!("evaluate --task usb {design}")).fails(2, &parts);
-        fake(&format!("trial --task usb {design}")).fails(2, &parts);
     }
     let stiffness = ["--density <PERCENT> --direction <DEG>", "--stiffness-assembly <K>"];
     optimize_line("evaluate").fails(2, &stiffness);

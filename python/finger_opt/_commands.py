@@ -546,6 +546,7 @@ def next_print(
     finger: StrPath = "finray9",
     start: Start | None = None,
     count: int = 1,
+    among: Literal["space", "published"] = "space",
     print_cost_mm: float = 0.1,
     priors: StrPath = "bench",
     simulations: int | None = None,
@@ -576,6 +577,7 @@ def next_print(
         finger: Finger file for finger_model computed: finray9, or the path of a file.
         start: How the nominal start is chosen [default: as in the task file].
         count: Number of fingers to print at a time.
+        among: Fingers that may be printed.
         print_cost_mm: Smallest expected gain of the chosen finger's range that is worth a print and its
             measurement, mm.
         priors: Priors of the parameters that were not measured: bench, or the path of a file.
@@ -594,8 +596,8 @@ def next_print(
     return called("next", {
         "measurements": measurements, "task": sources(task), "space": space, "robot": robot, "cell": cell,
         "stiffness_data": stiffness_data, "engine": engine, "finger_model": finger_model, "finger": finger,
-        "start": start, "count": count, "print_cost_mm": print_cost_mm, "priors": priors, "simulations": simulations,
-        "samples": samples, "seed": seed, "cache": cache, "no_cache": no_cache,
+        "start": start, "count": count, "among": among, "print_cost_mm": print_cost_mm, "priors": priors,
+        "simulations": simulations, "samples": samples, "seed": seed, "cache": cache, "no_cache": no_cache,
     }, Advice)
 
 

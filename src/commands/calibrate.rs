@@ -42,7 +42,7 @@ impl command::Request for Request {
         context.begin(simulations as f64 * cost::SIMULATION);
         let source = measured::file(&self.bench.measurements)?;
         let Prepared { subjects, layout, settings } =
-            self.calibration.prepare((&self.bench, &source), context)?;
+            self.calibration.prepare((&self.bench, &source), &[], context)?;
         let done = folds(context);
         let found = Calibration::new(layout, &subjects, &Settings { done: &done, ..settings });
         context.check()?;

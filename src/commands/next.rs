@@ -13,8 +13,18 @@ use calibration::next::{Advice, Fingers, Print, advise};
 use input::shipped::Source;
 use insertion::Design;
 use insertion::outcome::STOP_REMEDY;
+use insertion::stiffness::designs;
 use report::answer::words::{design, use_now};
 use serde::Serialize;
+
+/// Fingers that may be printed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum Among {
+    /// All fingers of the space
+    Space,
+    /// The 11 fingers of the publication
+    Published,
+}
 
 /// Recommend the finger to print next, or to stop printing.
 ///
@@ -32,6 +42,9 @@ pub struct Request {
     #[arg(long, value_name = "K", default_value_t = 1,
           value_parser = clap::value_parser!(u16).range(1..=100))]
     pub count: u16,
+    /// Fingers that may be printed
+    #[arg(long, value_enum, default_value = "space")]
+    pub among: Among,
     /// Smallest expected gain of the chosen finger's range that is worth a print and its measurement, mm
     #[arg(long, value_name = "MM", default_value_t = 0.1, value_parser = |text: &str| parse_at_least_0(text, "mm"))]
     pub print_cost_mm: f64,
@@ -72,6 +85,13 @@ impl command::Request for Request {
         if self.bench.setup.tasks.len() > 1 {
             return Err(Failure::usage("give one --task"));
         }
+        let published = match self.among {
+            Among::Space => Vec::new(),
+            Among::Published => designs()
+                .iter()
+                .map(|design| Design::infill(design.density_percent, design.direction_deg))
+                .collect(),
+        };
         let file = &self.bench.measurements;
         let missing = measured::is_missing(file);
         if missing {
@@ -81,15 +101,20 @@ impl command::Request for Request {
             true => Source { file: file.clone(), text: String::new() },
             false => measured::file(file)?,
         };
-        let prepared = self.calibration.prepare((&self.bench, &source), context)?;
+        let prepared = self.calibration.prepare((&self.bench, &source), &published, context)?;
         let Prepared { subjects, layout, settings } = prepared;
         let benches = layout.benches(&subjects);
         let one = subjects.first().zip(benches.first());
         let (subject, bench) = one.ok_or_else(|| Failure::usage("give one --task"))?;
-        let printable: Vec<usize> = (0..subject.of_space).collect();
+        let among: Vec<usize> = match self.among {
+            Among::Space => (0..subject.of_space).collect(),
+            Among::Published => {
+                published.iter().filter_map(|design| subject.finger(design)).collect()
+            }
+        };
         let failed = subject.not_measurable();
         let (designs, printed) = (&subject.designs, &subject.printed());
-        let fingers = Fingers { designs, printable: &printable, failed: &failed, printed };
+        let fingers = Fingers { designs, printable: &among, failed: &failed, printed };
         let posterior = layout.posterior(&benches, &settings);
         let mut random = stream(settings.seed, 0, "next");
         let (count, cost_mm) = (usize::from(self.count), self.print_cost_mm);

@@ -16,7 +16,7 @@ use calibration::experiments::Experiment;
 use calibration::simulation::Simulation;
 use calibration::subject::Subject;
 use input::shipped::{PRIORS, Source};
-use insertion::{Priors, Template};
+use insertion::{Design, Priors, Template};
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -86,10 +86,12 @@ impl CalibrationRequest {
         usize::from(self.effort.completed(None).simulations)
     }
 
-    /// Simulates the tasks and reads their measurements.
+    /// Simulates the tasks and reads their measurements; `more` are fingers to predict in addition to those of the
+    /// space.
     pub fn prepare<'a>(
         &self,
         (bench, measurements): (&BenchRequest, &Source),
+        more: &[Design],
         context: &Context<'a>,
     ) -> Result<Prepared<'a>, Failure> {
         context.cancel_on_interrupt()?;
@@ -102,7 +104,7 @@ impl CalibrationRequest {
         let (setup, priors, simulations) = (&setup, &priors, usize::from(effort.simulations));
         let (seed, cache) = (self.seed, self.cache.folder(setup));
         let calibration = CalibrationContext { setup, priors, simulations, seed, cache, context };
-        let (subjects, layout) = calibration.subjects(&measurements.file, &experiments)?;
+        let (subjects, layout) = calibration.subjects(&measurements.file, &experiments, more)?;
         Ok(Prepared { subjects, layout, settings: settings(effort, self.seed, context.stop) })
     }
 }
@@ -135,6 +137,7 @@ impl<'a> CalibrationContext<'a> {
         &self,
         measurements: &str,
         experiments: &[Experiment],
+        more: &[Design],
     ) -> Result<(Vec<Subject>, Layout), Failure> {
         let Setup { evaluator, space, .. } = self.setup;
         let subject = |template: &'a Template| {
@@ -148,7 +151,7 @@ impl<'a> CalibrationContext<'a> {
             let simulation =
                 Simulation::new(evaluator, template, parameters, cache, self.context.stop);
             let emulator = Emulator::new(&simulation, space, count, self.seed, &done)?;
-            Subject::new(&simulation, space, emulator, experiments)
+            Subject::new(&simulation, space, emulator, experiments, more)
         };
         let subjects = evaluator.templates.iter().map(subject).collect::<Result<Vec<_>, _>>();
         self.context.check().map_err(|failure| match self.cache {

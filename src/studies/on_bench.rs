@@ -47,7 +47,7 @@ pub(crate) fn predict(
     let known = CalibrationContext { setup, priors, simulations, seed, cache, context };
     let provenance = study.provenance().clone();
     let (found, predictions) = pool.install(|| {
-        let (subjects, layout) = known.subjects(&measured.file, &measured.experiments)?;
+        let (subjects, layout) = known.subjects(&measured.file, &measured.experiments, &[])?;
         let done = folds(context);
         let settings = Settings { done: &done, ..settings(effort, known.seed, context.stop) };
         let calibration = Calibration::new(layout, &subjects, &settings);

@@ -39,12 +39,13 @@ pub struct Subject {
 }
 
 impl Subject {
-    /// Collects the fingers of a space, and the fingers measured on the task of the simulation.
+    /// Collects the fingers of a space, the fingers measured on the task of the simulation, and those of `more`.
     pub fn new(
         simulation: &Simulation<'_>,
         space: &Space,
         emulator: Emulator,
         experiments: &[Experiment],
+        more: &[Design],
     ) -> Result<Self, CalibrationError> {
         let Simulation { evaluator, template, .. } = simulation;
         let task = template.task.name.clone();
@@ -54,15 +55,17 @@ impl Subject {
         let mut designs = fingers(space);
         designs.extend(strategies(space, lines.iter().map(|(design, _)| design)));
         let of_space = designs.len();
-        let numbered = |(design, line): (Design, &Experiment)| {
-            let known = designs.iter().position(|known| *known == design);
-            let number = known.unwrap_or_else(|| {
+        let mut numbered = |design: Design| {
+            designs.iter().position(|known| *known == design).unwrap_or_else(|| {
                 designs.push(design);
                 designs.len() - 1
-            });
-            (number, line.clone())
+            })
         };
-        let experiments = lines.into_iter().map(numbered).collect();
+        let lines = lines.into_iter().map(|(design, line)| (numbered(design), line.clone()));
+        let experiments = lines.collect();
+        for design in more {
+            numbered(design.clone());
+        }
         let stiffness = |design: &Design| {
             let predicted = evaluator.predict(design)?;
             Ok([1.0 / predicted.compliance.mean, predicted.assembly.mean])
@@ -73,6 +76,11 @@ impl Subject {
         let places = standardised(&stiffness, of_space);
         let parameters = simulation.parameters.iter().copied().cloned().collect();
         Ok(Subject { task, designs, of_space, emulator, experiments, places, unit, parameters })
+    }
+
+    /// Returns the index of a design.
+    pub fn finger(&self, design: &Design) -> Option<usize> {
+        self.designs.iter().position(|known| known == design)
     }
 
     /// Returns the indices of the measured fingers.

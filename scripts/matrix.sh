@@ -163,7 +163,8 @@ disks() {
         "task import --engine fake --unit mm --plug $mesh-plug.stl --socket $mesh-socket.stl --out disk/f.toml" \
         "task check usb --engine fake --svg disk/f.svg" \
         "measure add --task usb --density 20 --direction 10 --range-mm 5 disk/f.csv" \
-        "calibrate --task usb --engine fake --simulations 16 --samples 20 --no-cache --quiet --measurements published --out disk"; do
+        "calibrate --task usb --engine fake --simulations 16 --samples 20 --no-cache --quiet --measurements published --out disk" \
+        "compare whole --svg disk/f.svg"; do
         code=0
         # shellcheck disable=SC2086
         "$optimize" $command >/dev/null 2>error || code=$?

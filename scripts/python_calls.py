@@ -57,6 +57,7 @@ if probe:
     "finger": Call(
         "finger", "_springs.Finger", INFILL, example="4 < fo.finger(20, 20).mass_g < 6\nTrue"
     ),
+    "compare": Call("compare", "_study.Comparison", names={"dirs": "studies"}),
     "calibrate": Call("calibrate", "_calibration.Calibration", ("measurements", "task"), types={"task": TASKS}),
     "next": Call("next_print", "_calibration.Advice", ("measurements", "task"), types={"task": TASKS}),
     "identify": Call("identify", "_identify.Cell", ("task", "runs", "out")),

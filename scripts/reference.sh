@@ -138,7 +138,7 @@ shapes() {
     record studies "$folder"/*
 }
 
-# Keeps the files that `report` needs to open a study, but not its output.
+# Keeps the files that `report` and `compare` need to open a study, but not their output.
 studies() {
     local task kept
     for task in usb ket8 ket12 rj45; do

@@ -14,7 +14,7 @@ const PLACEHOLDER: Style = AnsiColor::Cyan.on_default();
 pub const COLUMNS: usize = 100;
 /// Commands by purpose, for the short help.
 const COMMANDS: [(&str, &[&str]); 5] = [
-    ("Study", &["study", "resume", "report"]),
+    ("Study", &["study", "resume", "report", "compare"]),
     ("Design", &["evaluate", "trial", "map", "levers", "sensitivity", "finger", "stiffness"]),
     ("Connector", &["task", "tasks", "robots"]),
     ("Bench", &["measure", "next", "identify", "calibrate"]),

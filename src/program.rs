@@ -15,7 +15,7 @@ use std::sync::LazyLock;
 const STUDY: Command = Command::of::<study::Request>(&["study"]);
 
 /// Order of the commands in the help, within each group as well.
-const ORDER: &str = "study resume report evaluate trial map stiffness mjcf finger sensitivity levers calibrate \
+const ORDER: &str = "study resume report evaluate trial map stiffness mjcf finger compare sensitivity levers calibrate \
                      identify next measure export ask-tell config robots tasks task add new show check import sheet \
                      tune completions man";
 

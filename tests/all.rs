@@ -13,6 +13,7 @@ mod bench;
 mod cell;
 mod command_line;
 mod common;
+mod compare;
 mod connectors;
 mod dependencies;
 mod documents;

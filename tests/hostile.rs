@@ -224,8 +224,9 @@ fn what_a_terminal_would_obey_is_shown_instead() {
     }
     let name = "e\u{1b}[31m";
     studies.study(name, 6, &[]).succeeds();
-    let report = run(command(&["report"]).arg(studies.dir(name)));
-    for text in [report.succeeds(), &studies.read(&format!("{name}/report.html"))] {
+    let svg = studies.dir("compare.svg");
+    let compare = run(command(&["compare"]).arg(studies.dir(name)).arg("--svg").arg(&svg));
+    for text in [compare.succeeds(), &read(&svg), &studies.read(&format!("{name}/report.html"))] {
         assert!(!text.chars().any(|c| c.is_control() && !"\n\t\r".contains(c)));
     }
 }
@@ -248,6 +249,7 @@ fn no_room_for_an_output_is_a_message_and_leaves_nothing() {
         ("task new mine --engine fake --like usb --out".to_owned(), "m.toml"),
         (format!("export finger --format 3mf {finger} --out"), "f.3mf"),
         (format!("trial --task usb {finger} --record"), "t.html"),
+        (format!("compare {} --svg", study.display()), "c.svg"),
     ] {
         let path = full.join(file);
         let line = format!("ulimit -f 0; exec \"$0\" {words} \"$1\"");

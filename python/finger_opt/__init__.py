@@ -14,6 +14,7 @@ Simulation of a finger
 Optimization
     Study.create    seeded study in a folder; .run() starts or continues it
     load_study      study in a folder; .answer recommends the finger to print
+    compare         comparison of optimizers over studies
 Your own connector
     import_parts    task from meshes or STEP files
     new_task        task from a few dimensions
@@ -61,7 +62,7 @@ from ._optimizer import Optimizer as Optimizer, Point as Point
 from ._parts import Imported as Imported, import_parts as import_parts
 from ._run import perform as perform
 from ._springs import Finger as Finger, StiffnessModel as StiffnessModel, stiffness as stiffness
-from ._study import Sensitivity as Sensitivity, Study as Study
+from ._study import Comparison as Comparison, Sensitivity as Sensitivity, Study as Study
 from ._sweep import sweep as sweep
 from ._task import Task as Task
 from ._trial import Film as Film, Series as Series, Trial as Trial

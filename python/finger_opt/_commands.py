@@ -16,15 +16,15 @@ from ._lists import Robots, Tasks
 from ._map import CaptureMap, Levers
 from ._result import Found
 from ._springs import Finger
-from ._study import Sensitivity, Study
+from ._study import Comparison, Sensitivity, Study
 from ._task import Given, sources
 from ._trial import Trial
 from ._words import Axes, Engine, FingerModel, Numbers, RobotName, SpaceName, Start, StrPath, TaskName
 
 __all__ = [
-    "calibrate", "capture_map", "check_task", "config", "evaluate", "export_finger", "export_mjcf", "finger",
-    "identify", "levers", "load_study", "measuring_sheet", "new_task", "next_print", "robots", "sensitivity",
-    "tasks", "trial", "tune_task",
+    "calibrate", "capture_map", "check_task", "compare", "config", "evaluate", "export_finger", "export_mjcf",
+    "finger", "identify", "levers", "load_study", "measuring_sheet", "new_task", "next_print", "robots",
+    "sensitivity", "tasks", "trial", "tune_task",
 ]
 #: Functions and summaries missing from the docstring of the package.
 _FURTHER = """"""
@@ -312,6 +312,26 @@ def finger(
     return called("finger", {
         "density": density, "direction": direction, "finger": finger, "phase_mm": phase_mm, "set": set, "svg": svg,
     }, Finger)
+
+
+@checked
+def compare(
+    studies: Iterable[StrPath],
+    *,
+    svg: StrPath | None = None,
+) -> Comparison:
+    """Compare optimizers over studies of the same task and objective, as ``optimize compare`` does.
+
+    Args:
+        studies: Folders of the studies; several seeds of an optimizer give median and quartiles.
+        svg: Draw the best value so far of each optimizer.
+
+    Raises:
+        InputError: A value or file is invalid; :class:`TaskError` if it is the task.
+        StudyError: The command fails at run time or cannot write a file.
+        Interrupted: Ctrl-C.
+    """
+    return called("compare", {"dirs": studies, "svg": svg}, Comparison)
 
 
 @checked

@@ -271,6 +271,45 @@ def _surface(study: Study, ax: Drawing | None) -> Drawing:
 
 
 @dataclass(frozen=True, repr=False)
+class Quartiles(Result):
+    """Quartiles over studies; ``None`` where too few of them reached the target or have a value."""
+
+    q25: float | None
+    median: float | None
+    q75: float | None
+
+
+@dataclass(frozen=True, repr=False)
+class Compared(Result):
+    """Evaluations that an optimizer needs to reach the target; ``reached`` of its ``studies`` did."""
+
+    optimizer: str
+    batch: int
+    studies: int
+    reached: int
+    evaluations_to_target: Quartiles
+    best_so_far_mm: tuple[Quartiles, ...] = field(repr=False)
+
+
+@dataclass(frozen=True, repr=False)
+class Comparison(Result):
+    """Comparison of optimizers over studies of the same task and objective.
+
+    The target, ``target_mm``, is slightly below the best known value.
+    """
+
+    task: str
+    objective: str
+    best_known_mm: float
+    target_mm: float
+    optimizers: tuple[Compared, ...]
+    svg: str = field(default="", repr=False, metadata=PICTURE)
+
+    def _repr_html_(self) -> str:
+        return self.svg
+
+
+@dataclass(frozen=True, repr=False)
 class Factor(Result):
     """Sobol indices of an input from ``low`` to ``high``: first-order and total, each with its interval.
 

@@ -84,6 +84,11 @@ def test_a_film_plays_by_itself(tmp_path):
         fo.trial("usb", 20, 10).replay()
 
 
-def test_what_else_has_a_drawing():
-    for shown in (fo.finger(20, 20), fo.check_task("usb")):
-        assert "<svg" in shown._repr_html_()
+@pytest.mark.parametrize("what", ["finger", "check", "compare"])
+def test_what_else_has_a_drawing(what, fake, tmp_path):
+    if what == "compare":
+        folders = [fo.Study.create("usb", budget=4, seed=seed, out=tmp_path / str(seed), no_cache=True, **fake)
+                   .run(progress=False) for seed in (1, 2)]
+    shown = {"finger": lambda: fo.finger(20, 20), "check": lambda: fo.check_task("usb"),
+             "compare": lambda: fo.compare(folders)}[what]()
+    assert "<svg" in shown._repr_html_()

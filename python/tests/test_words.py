@@ -54,7 +54,7 @@ def test_a_name_that_is_no_utf_8_is_refused_before_it_is_written(call, tmp_path)
 
 CALLS = (
     fo.evaluate, fo.trial, fo.stiffness, fo.finger, fo.check_task, fo.export_finger, fo.export_mjcf, fo.Optimizer, fo.sweep,
-    fo.load_study, fo.Study.create, SimulatedRobot,
+    fo.compare, fo.load_study, fo.Study.create, SimulatedRobot,
 )
 #: What parameters may be; the closed formula takes no time.
 RIGHT = {"engine": "fake", "task": "usb", "density": 20, "direction": 10, "format": "stl", "out": "o.stl", "space": "infill"}

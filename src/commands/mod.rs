@@ -2,6 +2,7 @@
 
 pub mod ask_tell;
 pub mod calibrate;
+pub mod compare;
 pub mod completions;
 pub mod config;
 pub mod evaluate;
@@ -48,6 +49,7 @@ use crate::command::Command;
 pub static COMMANDS: &[Command] = &[
     Command::of::<ask_tell::Request>(&["ask-tell"]),
     Command::of::<calibrate::Request>(&["calibrate"]),
+    Command::of::<compare::Request>(&["compare"]),
     Command::of::<completions::Request>(&["completions"]),
     Command::of::<config::Request>(&["config"]),
     Command::of::<evaluate::Request>(&["evaluate"]),

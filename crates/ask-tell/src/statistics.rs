@@ -86,6 +86,14 @@ pub fn quantile(sorted: &[f64], probability: f64) -> Option<f64> {
     sorted.get(rank.round() as usize).copied()
 }
 
+/// Returns the quantile of sorted values, interpolated linearly between the two nearest ranks.
+pub fn interpolated_quantile(sorted: &[f64], probability: f64) -> Option<f64> {
+    let rank = probability * sorted.len().checked_sub(1)? as f64;
+    let [low, high] = [rank.floor(), rank.ceil()].map(|at| sorted.get(at as usize).copied());
+    let part = rank - rank.floor();
+    if part == 0.0 { low } else { Some(low? + part * (high? - low?)) }
+}
+
 /// Returns Pearson's correlation coefficient; `None` if either variable is constant.
 pub fn pearson(first: &[f64], second: &[f64]) -> Option<f64> {
     let (first_mean, second_mean) = (mean(first)?, mean(second)?);
@@ -164,6 +172,8 @@ mod tests {
         let sorted = sorted(values);
         let whole = [0.0, 0.25, 0.75, 1.0].map(|at| quantile(&sorted, at));
         assert_eq!(whole, [1., 2., 4., 7.].map(Some));
+        let between = [0.0, 0.25, 0.5, 1.0].map(|at| interpolated_quantile(&sorted, at));
+        assert_eq!(between, [1., 1.75, 3., 7.].map(Some));
     }
 
     #[test]

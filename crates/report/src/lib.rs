@@ -5,6 +5,7 @@ mod bar;
 mod bench;
 pub mod calibrate;
 mod chart;
+pub mod compare;
 mod convergence;
 mod elements;
 mod explore;

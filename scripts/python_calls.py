@@ -53,9 +53,7 @@ if probe:
     ),
     "map": Call("capture_map", "_map.CaptureMap", SUBJECT),
     "levers": Call("levers", "_map.Levers", SUBJECT),
-    "sensitivity": Call(
-        "sensitivity", "_study.Sensitivity", ("task",), types={"objective": 'Literal["range", "centred-range"]'}
-    ),
+    "sensitivity": Call("sensitivity", "_study.Sensitivity", ("task",)),
     "finger": Call(
         "finger", "_springs.Finger", INFILL, example="4 < fo.finger(20, 20).mass_g < 6\nTrue"
     ),

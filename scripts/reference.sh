@@ -49,7 +49,6 @@ finger() {
             done
     } > "$folder/table.txt"
     "$optimize" finger --density 20 --direction 20 --svg "$folder/finray9.svg" > "$folder/finray9.txt"
-    "$optimize" finger --density 20 --direction 20 --load-n 0,20 --svg "$folder/coupling.svg" > /dev/null
     record windows "$folder"/*
 }
 
@@ -100,7 +99,7 @@ check() {
 windows() {
     "$lab" check --convergence > "$reference/convergence.txt" ||
         echo "a window changes with the step: $reference/convergence.txt" >&2
-    "$lab" check --searches --fingers all > "$reference/window_search.txt" ||
+    "$lab" check --searches --all-fingers > "$reference/window_search.txt" ||
         echo "the searches differ: $reference/window_search.txt" >&2
     record windows "$reference"/{convergence,window_search}.txt
 }

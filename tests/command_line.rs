@@ -332,7 +332,6 @@ fn a_design_outside_the_space_is_answered_with_its_bounds() {
     ] {
         let design = format!("--density {density} --direction {direction}");
         fake(&format!("evaluate --task usb {design}")).fails(2, &parts);
-        fake(&format!("trial --task usb {design}")).fails(2, &parts);
     }
     let stiffness = ["--density <PERCENT> --direction <DEG>", "--stiffness-assembly <K>"];
     optimize_line("evaluate").fails(2, &stiffness);
@@ -433,7 +432,7 @@ fn the_shell_and_man_are_served_and_the_version_names_the_sources() {
     for shell in ["bash", "zsh", "fish"] {
         optimize(&["completions", shell]).says(&["optimize"]);
     }
-    assert!(optimize(&["man"]).succeeds().starts_with(".ie"));
+    assert!(optimize(&["man"]).succeeds().starts_with("# Commands"));
     let number = format!("optimize {} (", env!("CARGO_PKG_VERSION"));
     let version = optimize_line("--version").succeeds().trim_end().to_owned();
     assert!(version.starts_with(&number) && version.contains(", sources "), "{version}");
@@ -455,8 +454,6 @@ fn the_inputs_that_matter_for_the_window_are_ranked() {
     let factors = sobol["factors"].as_array().unwrap();
     assert_eq!(factors.len(), 2);
     assert!(factors.iter().map(share).sum::<f64>() > 0.5, "{sobol}");
-    fake("sensitivity --task usb --objective slip")
-        .fails(2, &["has no value where nothing inserts"]);
 }
 
 #[test]
@@ -472,9 +469,6 @@ fn a_finger_is_computed_from_its_ribs() {
         assert!(of("coupling_yz") > 0.5 && of("tilting_nm_per_rad") > 1.0, "{json}");
     }
     assert!(studies.read("finger.svg").contains("</svg>"));
-    optimize_line(&format!("{drawn} --load-n 0,20")).succeeds();
-    assert!(studies.read("finger.svg").contains("20.0 N in z"));
-    optimize_line(&format!("{infill} --load-n 5")).fails(2, &["--load-n", "for example -5,0"]);
     optimize_line(infill).says(&["pad and roof"]);
     optimize_line("finger --density 0.2 --direction 0")
         .fails(2, &["--density: is 0.2", "1 .. 100"]);

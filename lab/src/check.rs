@@ -3,35 +3,17 @@
 
 use crate::compare::{Setting, TaskSettings, pairs, tasks};
 use crate::{Failure, print};
-use clap::{Args, ValueEnum};
+use clap::Args;
 use contact::Engine;
 use finger_opt::setup::files;
 use finger_opt::setup::request::DEFAULT_ROBOT;
 use insertion::stiffness::{designs, representative_designs};
 use insertion::trial::run::EngineRig;
-use insertion::{EngineKind, Measurement, OffsetStep, Robot, Search, Task};
+use insertion::{EngineKind, OffsetStep, Robot, Search, Task};
 use std::sync::Arc;
 
 /// Largest accepted shift of a window's end at half the time step, in grid steps of 0.1 mm.
 const ALLOWED_STEPS: OffsetStep = 1;
-
-/// Selection of measured fingers.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Fingers {
-    /// All 11
-    All,
-    /// Those of lowest, middle and highest compliance stiffness
-    Three,
-}
-
-impl Fingers {
-    fn designs(self) -> Vec<Measurement> {
-        match self {
-            Fingers::All => designs(),
-            Fingers::Three => representative_designs(),
-        }
-    }
-}
 
 /// Compare the contact engine with analytic results.
 #[derive(Debug, Args)]
@@ -48,9 +30,9 @@ pub struct Arguments {
     /// Tasks of the windows: ket8, ket12, rj45, usb or all
     #[arg(long, value_name = "NAME", default_value = "all", requires = "windows")]
     task: String,
-    /// Measured fingers of the windows
-    #[arg(long, value_enum, default_value = "three", requires = "windows")]
-    fingers: Fingers,
+    /// All 11 measured fingers, not only those of lowest, middle and highest compliance stiffness
+    #[arg(long, requires = "windows")]
+    all_fingers: bool,
     /// Robot of the windows
     #[arg(long, value_name = "NAME", default_value = DEFAULT_ROBOT, requires = "windows")]
     robot: String,
@@ -80,7 +62,8 @@ impl Arguments {
         let tasks = tasks(&self.task)?.into_iter().map(|task| settings(task, &robot, engine()));
         let tasks = tasks.collect::<Result<Vec<_>, _>>()?;
         let allowed = if self.convergence { ALLOWED_STEPS } else { 0 };
-        let found = pairs::simulate(&tasks, &self.fingers.designs());
+        let fingers = if self.all_fingers { designs() } else { representative_designs() };
+        let found = pairs::simulate(&tasks, &fingers);
         let failed = found.iter().filter(|pair| !pair.agrees(allowed)).count();
         print(&pairs::text(&found, Some(allowed)))?;
         verdict("windows", failed, found.len())

@@ -286,7 +286,6 @@ def finger(
     phase_mm: float | None = None,
     set: Numbers | None = None,
     svg: StrPath | None = None,
-    load_n: tuple[float, float] = (-5.0, 0.0),
 ) -> Finger:
     """Compute the stiffness of a printed finger from its ribs, as ``optimize finger`` does.
 
@@ -303,9 +302,7 @@ def finger(
         finger: finray9, or the path of a finger file.
         phase_mm: Position of the first rib, mm [default: that of the finger file].
         set: A number of the finger file, for example finger.skin.thickness_mm=0.8.
-        svg: Draw the finger at rest and under a force on its pad.
-        load_n: Force on the pad for svg, N: y towards the part, z up; -5,0 is a grasp, 0,10 a part that
-            pulls up.
+        svg: Draw the finger at rest and under the force of a grasp on its pad.
 
     Raises:
         InputError: A value or file is invalid; :class:`TaskError` if it is the task.
@@ -314,7 +311,6 @@ def finger(
     """
     return called("finger", {
         "density": density, "direction": direction, "finger": finger, "phase_mm": phase_mm, "set": set, "svg": svg,
-        "load_n": load_n,
     }, Finger)
 
 
@@ -350,7 +346,6 @@ def sensitivity(
     finger_model: FingerModel | None = None,
     finger: StrPath = "finray9",
     start: Start | None = None,
-    objective: Literal["range", "centred-range"] = "range",
     uncertainty: StrPath = "typical",
     samples: int = 64,
     seed: int = 0,
@@ -369,7 +364,6 @@ def sensitivity(
             computed for a space with parameters of the printed finger].
         finger: Finger file for finger_model computed: finray9, or the path of a file.
         start: How the nominal start is chosen [default: as in the task file].
-        objective: Measure to analyse.
         uncertainty: Errors of the cell to vary as well: typical, none, or the path of a file.
         samples: Rows of the sample; the number of evaluations is this times (inputs + 2).
         seed: Seed of the sample.
@@ -382,8 +376,8 @@ def sensitivity(
     """
     return called("sensitivity", {
         "task": sources(task), "space": space, "robot": robot, "cell": cell, "stiffness_data": stiffness_data,
-        "engine": engine, "finger_model": finger_model, "finger": finger, "start": start, "objective": objective,
-        "uncertainty": uncertainty, "samples": samples, "seed": seed, "svg": svg,
+        "engine": engine, "finger_model": finger_model, "finger": finger, "start": start, "uncertainty": uncertainty,
+        "samples": samples, "seed": seed, "svg": svg,
     }, Sensitivity)
 
 

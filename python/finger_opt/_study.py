@@ -329,13 +329,12 @@ class Factor(Result):
 
 @dataclass(frozen=True, repr=False)
 class Sensitivity(Result):
-    """Sensitivity of the objective to its inputs, the most important one first.
+    """Sensitivity of the range to its inputs, the most important one first.
 
     ``diverged`` and ``nominal_start_fails`` are numbers of evaluations.
     """
 
     task: str
-    objective: str
     evaluations: int
     diverged: int
     nominal_start_fails: int
@@ -365,6 +364,6 @@ def _importances(found: Sensitivity, ax: Drawing | None) -> Drawing:
         places = [row + place for row in range(len(rows))]
         axes.barh(places, share, height=0.4, xerr=errors, color=fill, label=label, ecolor="0.4")
     axes.set_yticks(range(len(rows)), [text(of.name) for of in rows], fontsize=8)
-    axes.set(xlabel=f"share of the variance of {found.objective}", title=text(found.task))
+    axes.set(xlabel="share of the variance of the range", title=text(found.task))
     axes.legend(loc="lower right")
     return axes

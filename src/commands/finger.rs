@@ -4,7 +4,6 @@ use crate::layout::wrapped;
 use crate::setup::files::DEFAULT_FINGER;
 use crate::setup::finger::{InfillRequest, setting};
 use crate::setup::printed::{finger_file, predicted_stiffness};
-use crate::setup::words::parse_pair;
 use crate::{Context, Failure, Output, command};
 use finray::geometry::Geometry;
 use finray::mechanics::{self, FingerStiffness};
@@ -18,9 +17,6 @@ use report::answer::lines;
 use report::text_table;
 use serde_json::{Value, json};
 use std::path::PathBuf;
-
-/// Largest force on the pad for the drawing, N; the model is linear, so that displacements grow without bound.
-const LARGEST_LOAD_N: f64 = 1000.0;
 
 /// Compute the stiffness of a printed finger from its ribs.
 ///
@@ -45,23 +41,9 @@ pub struct Request {
     /// A number of the finger file, for example finger.skin.thickness_mm=0.8; may be given several times
     #[arg(long, value_name = "KEY=VALUE", value_parser = setting)]
     pub set: Vec<(String, f64)>,
-    /// Draw the finger at rest and under a force on its pad
+    /// Draw the finger at rest and under the force of a grasp on its pad
     #[arg(long, value_name = "FILE.svg")]
     pub svg: Option<PathBuf>,
-    /// Force on the pad for --svg, N: y towards the part, z up; -5,0 is a grasp, 0,10 a part that pulls up
-    #[arg(long, value_name = "Y,Z", default_value = "-5,0", value_parser = force,
-        allow_hyphen_values = true)]
-    pub load_n: [f64; 2],
-}
-
-fn force(text: &str) -> Result<[f64; 2], String> {
-    let (y, z) = parse_pair(text).unwrap_or_default();
-    match (1e-3..=LARGEST_LOAD_N).contains(&libm::hypot(y, z)) {
-        true => Ok([y, z]),
-        false => {
-            Err(format!("must be a force Y,Z of 0.001 to {LARGEST_LOAD_N} N, for example -5,0"))
-        }
-    }
 }
 
 impl command::Request for Request {
@@ -74,14 +56,13 @@ impl command::Request for Request {
         let set = Design(self.set.iter().cloned().collect());
         let file = finger_file(&self.finger)?;
         let finger = file.with(&set)?;
-        let [density, direction] = self.infill.required()?;
-        let infill = infill(&Design::infill(density, direction), self.phase_mm);
-        let geometry = Geometry::new(&finger, &infill)?;
-        let computed = mechanics::compute(&geometry)?;
+        let [density, direction] = self.infill.required("")?;
         let mut design = Design::infill(density, direction);
+        let geometry = Geometry::new(&finger, &infill(&design, self.phase_mm))?;
+        let computed = mechanics::compute(&geometry)?;
         design.0.extend(set.0);
         let model = predicted_stiffness(&file.finger, &design)?;
-        let svg = picture::svg(&geometry, self.load_n)?;
+        let svg = picture::svg(&geometry)?;
         let value = json(&geometry, &computed, model.as_ref());
         let text = wrapped(&text(&geometry, &computed, model.as_ref()));
         Output::new(text, value).drawn(svg, self.svg.as_ref())

@@ -1,6 +1,5 @@
 //! `optimize sensitivity`: Sobol indices of the inputs.
 
-use crate::setup::words::WordParser;
 use crate::{Context, Failure, Output, SetupRequest, command, not_stopped};
 use analysis::sensitivity::{evaluate, inputs};
 use insertion::{DesignError, Measure};
@@ -17,10 +16,6 @@ pub struct Request {
     /// One task, robot, space and finger model.
     #[command(flatten)]
     pub setup: SetupRequest,
-    /// Measure to analyse
-    #[arg(long, value_name = "NAME", default_value = "range",
-          value_parser = WordParser::<Measure>::new([Measure::Range, Measure::CentredRange].map(Measure::name)))]
-    pub objective: Measure,
     /// Errors of the cell to vary as well: typical, none, or the path of a file
     #[arg(long, value_name = "NAME", default_value = "typical")]
     pub uncertainty: String,
@@ -49,10 +44,6 @@ impl command::Request for Request {
 
 impl Request {
     fn found(&self, stop: &AtomicBool) -> Result<SensitivityResult, Failure> {
-        if !matches!(self.objective, Measure::Range | Measure::CentredRange) {
-            let problem = "has no value where nothing inserts; use range or centred-range";
-            return Err(Failure::usage(format!("--objective {} {problem}", self.objective)));
-        }
         let mut setup = self.setup.setup()?;
         if self.uncertainty != "none" {
             setup = setup.with_named_uncertainty(&self.uncertainty)?;
@@ -71,22 +62,20 @@ impl Request {
                 return Ok(None);
             }
             let evaluation = evaluate(&factors, (&setup.evaluator, template), unit, stop)?;
-            Ok(self.objective.value(&evaluation))
+            Ok(Measure::Range.value(&evaluation))
         };
         let points = sample.points();
         let values = points.par_iter().map(value).collect::<Result<Vec<_>, DesignError>>()?;
         not_stopped(stop)?;
         let counted: Vec<f64> = values.iter().map(|value| value.unwrap_or_default()).collect();
         let indices = sample.indices(&counted).ok_or_else(|| {
-            let everywhere = self.objective.show(counted[0]);
-            let problem = format!(
-                "is {everywhere} for all inputs, so no share of its variance can be computed"
-            );
-            Failure::running(format!("{} {problem}", self.objective))
+            let everywhere = Measure::Range.show(counted[0]);
+            Failure::running(format!(
+                "range is {everywhere} for all inputs, so no share of its variance can be computed"
+            ))
         })?;
         Ok(SensitivityResult {
             task: template.task.name.clone(),
-            objective: self.objective.to_string(),
             evaluations: values.len(),
             diverged: values.iter().filter(|value| value.is_none()).count(),
             nominal_start_fails: values.iter().filter(|value| **value == Some(0.0)).count(),

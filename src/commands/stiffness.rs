@@ -36,7 +36,7 @@ pub struct Request {
 impl command::Request for Request {
     fn run(&self, context: &Context<'_>) -> Result<Output, Failure> {
         let given = self.infill != InfillRequest::default();
-        let infill = given.then(|| self.infill.required()).transpose()?;
+        let infill = given.then(|| self.infill.required("")).transpose()?;
         if let Some([density, direction]) = infill {
             let check = Check { file: "stiffness" };
             numbers::check(check, DENSITY, density)?;

@@ -47,13 +47,14 @@ impl InfillRequest {
         InfillRequest { density: Some(density), direction: Some(direction) }
     }
 
-    /// Returns the density, percent, and the direction, degrees, which must both be given.
+    /// Returns the density, percent, and the direction, degrees, which must both be given; `or` names in the error what
+    /// could be given instead.
     ///
     /// # Errors
     /// If one of them is missing, or the density is out of bounds.
-    pub fn required(self) -> Result<[f64; 2], Failure> {
+    pub fn required(self, or: &str) -> Result<[f64; 2], Failure> {
         let (Some(density), Some(direction)) = (self.density, self.direction) else {
-            return Err(Failure::usage("give --density and --direction"));
+            return Err(Failure::usage(format!("give --density and --direction{or}")));
         };
         match numbers::problem(DENSITY_KEY, density) {
             Some(problem) => Err(Failure::usage(format!("--density: {problem}"))),
@@ -143,13 +144,8 @@ impl FingerRequest {
             Some((compliance, assembly)) => {
                 Prediction::exact(compliance * N_PER_MM, assembly * N_PER_MM)
             }
-            None if self.infill == InfillRequest::default() => {
-                return Err(Failure::usage(
-                    "give --density and --direction, or --stiffness-compliance and --stiffness-assembly",
-                ));
-            }
             None => {
-                self.infill.required()?;
+                self.infill.required(", or --stiffness-compliance and --stiffness-assembly")?;
                 evaluator.predict(&design)?
             }
         };

@@ -31,70 +31,53 @@ pub struct PrintRequest {
     pub phase_mm: Option<f64>,
 }
 
-impl PrintRequest {
-    /// Returns the geometry of the finger.
-    ///
-    /// # Errors
-    /// If a file is invalid, the study recommends no design, or the finger cannot be built.
-    pub fn geometry(&self) -> Result<Geometry, Failure> {
-        let (design, file, _) = self.chosen()?;
-        Geometry::new(&file.with(&design)?, &infill(&design, self.phase_mm)).map_err(Failure::input)
-    }
+/// Chosen finger.
+pub struct PrintChoice {
+    /// Geometry of the finger.
+    pub geometry: Geometry,
+    /// Notes on the finger of a study: which one it is, which one the headline of the study names instead, and whether
+    /// the study is unfinished.
+    pub notes: Vec<String>,
+    design: Design,
+    file: FingerFile,
+    /// Stiffness that a study predicted.
+    of_study: Option<Prediction>,
+}
 
+impl PrintChoice {
     /// Returns the stiffness predicted by the stiffness model of the study, else by that of the finger file; `None` if
     /// the finger file names no table of measured fingers.
     ///
     /// # Errors
-    /// See [`PrintRequest::geometry`].
+    /// If the table is invalid.
     pub fn predicted_stiffness(&self) -> Result<Option<Prediction>, Failure> {
-        let (design, file, of_study) = self.chosen()?;
-        of_study.map_or_else(|| predicted_stiffness(&file.finger, &design), |found| Ok(Some(found)))
+        let of_file = || predicted_stiffness(&self.file.finger, &self.design);
+        self.of_study.map_or_else(of_file, |found| Ok(Some(found)))
     }
+}
 
-    /// Returns notes on the finger of a study: which one it is, which one the headline of the study names instead, and
-    /// whether the study is unfinished.
+impl PrintRequest {
+    /// Returns the finger.
     ///
     /// # Errors
-    /// If the study cannot be read.
-    pub fn notes(&self) -> Result<Vec<String>, Failure> {
-        let Some(dir) = &self.dir else { return Ok(Vec::new()) };
-        let record = StudyRecord::load(dir)?;
-        let answer = Answer::of(&record);
-        let Some(finger) = answer.verdict.finger() else { return Ok(Vec::new()) };
-        let by =
-            if record.on_bench.is_some() { "simulation and measurements" } else { "simulation" };
-        let dir = shell_word(dir.display());
-        let mut notes = vec![format!("exports {}, recommended by {by}", words::design(finger))];
-        let other = answer.use_now().filter(|best| best.design != *finger);
-        notes.extend(other.and_then(|best| {
-            let [density, direction] = [DENSITY_KEY, DIRECTION_KEY].map(|key| best.design.get(key));
-            let options = format!("--density {} --direction {}", density?, direction?);
-            Some(format!("{}; export it with {options} instead of {dir}", words::use_now(&best)))
-        }));
-        let unfinished = || format!("the study is unfinished: optimize resume {dir}");
-        notes.extend(record.unfinished().then(unfinished));
-        Ok(notes)
-    }
-
-    /// Returns the design, its finger file, and the stiffness that a study predicted.
-    fn chosen(&self) -> Result<(Design, FingerFile, Option<Prediction>), Failure> {
-        let InfillRequest { density, direction } = self.infill;
-        let (design, file, stiffness) = match &self.dir {
+    /// If a file is invalid, the study recommends no design, or the finger cannot be built.
+    pub fn chosen(&self) -> Result<PrintChoice, Failure> {
+        let (design, file, of_study, notes) = match &self.dir {
             Some(dir) => best(dir)?,
-            None if density.is_none() || direction.is_none() => {
-                let problem = "give DIR, the folder of a study, or --density and --direction";
-                return Err(Failure::usage(problem));
-            }
             None => {
-                let [density, direction] = self.infill.required()?;
-                (Design::infill(density, direction), None, None)
+                let [density, direction] =
+                    self.infill.required(", or DIR, the folder of a study")?;
+                (Design::infill(density, direction), None, None, Vec::new())
             }
         };
         let file = match (&self.finger, file) {
             (None, Some(file)) => file,
             (named, _) => finger_file(named.as_deref().unwrap_or(DEFAULT_FINGER))?,
         };
-        Ok((design, file, stiffness.filter(|_| self.finger.is_none())))
+        let geometry = Geometry::new(&file.with(&design)?, &infill(&design, self.phase_mm))
+            .map_err(Failure::input)?;
+        let of_study = of_study.filter(|_| self.finger.is_none());
+        Ok(PrintChoice { geometry, notes, design, file, of_study })
     }
 }
 
@@ -122,13 +105,28 @@ pub(crate) fn predicted_stiffness(
     Ok(surrogate(&stiffness_data(None, finger)?, finger)?.predict([density, direction]).ok())
 }
 
-/// Returns the recommended design of a study, its finger file, and its stiffness, if the design was evaluated.
-fn best(dir: &Path) -> Result<(Design, Option<FingerFile>, Option<Prediction>), Failure> {
+/// Recommended design of a study, its finger file, its stiffness, if the design was evaluated, and notes on it.
+type Best = (Design, Option<FingerFile>, Option<Prediction>, Vec<String>);
+
+fn best(dir: &Path) -> Result<Best, Failure> {
     let record = StudyRecord::load(dir)?;
-    let Some(best) = Answer::of(&record).verdict.finger().cloned() else {
+    let answer = Answer::of(&record);
+    let Some(best) = answer.verdict.finger() else {
         let problem = "the study recommends no design; give --density and --direction";
         return Err(Failure::usage(format!("{}: {problem}", dir.display())));
     };
-    let found = record.current().iter().find(|recorded| recorded.design == best);
-    Ok((best.clone(), record.finger.clone(), found.map(|recorded| recorded.stiffness)))
+    let by = if record.on_bench.is_some() { "simulation and measurements" } else { "simulation" };
+    let dir = shell_word(dir.display());
+    let mut notes = vec![format!("exports {}, recommended by {by}", words::design(best))];
+    let other = answer.use_now().filter(|other| other.design != *best);
+    notes.extend(other.and_then(|other| {
+        let [density, direction] = [DENSITY_KEY, DIRECTION_KEY].map(|key| other.design.get(key));
+        let options = format!("--density {} --direction {}", density?, direction?);
+        Some(format!("{}; export it with {options} instead of {dir}", words::use_now(&other)))
+    }));
+    let unfinished = || format!("the study is unfinished: optimize resume {dir}");
+    notes.extend(record.unfinished().then(unfinished));
+    let found = record.current().iter().find(|recorded| recorded.design == *best);
+    let stiffness = found.map(|recorded| recorded.stiffness);
+    Ok((best.clone(), record.finger.clone(), stiffness, notes))
 }

@@ -58,9 +58,3 @@ pub(crate) fn parse_at_least_0(text: &str, unit: &str) -> Result<f64, String> {
     let problem = format!("must be a number of at least 0 ({unit})");
     parse_number(text, |number| number.is_finite() && number >= 0.0, &problem)
 }
-
-/// Parses two numbers separated by a comma.
-pub(crate) fn parse_pair(text: &str) -> Option<(f64, f64)> {
-    let (first, second) = text.split_once(',')?;
-    first.trim().parse().ok().zip(second.trim().parse().ok())
-}

@@ -19,23 +19,25 @@ const SCALE: f64 = 12.0;
 const MARGIN: [f64; 4] = [9.0, 12.0, 4.0, 11.0];
 /// Largest displacement in the picture, mm.
 const MAX_DISPLACEMENT: f64 = 5.0;
+/// Force of a grasp on the pad, along y (towards the part) and z (up), N.
+const GRASP: [f64; 2] = [-5.0, 0.0];
 /// Length of the scale bar, mm.
 const BAR: f64 = 10.0;
 
-/// Draws the finger at rest (light) and under a force on its pad (dark), y and z components in N, as a stand-alone SVG.
-/// The gripped part touches only the pad and does not prevent its rotation.
+/// Draws the finger at rest (light) and under the force of a grasp on its pad (dark) as a stand-alone SVG. The gripped
+/// part touches only the pad and does not prevent its rotation.
 ///
 /// # Errors
 /// If the finger's stiffness cannot be computed.
-pub fn svg(geometry: &Geometry, force: [f64; 2]) -> Result<String, InputError> {
-    let bent = BentFinger::new(geometry, force).map_err(|error| geometry.finger.fault(error))?;
+pub fn svg(geometry: &Geometry) -> Result<String, InputError> {
+    let bent = BentFinger::new(geometry).map_err(|error| geometry.finger.fault(error))?;
     let [left, top, right, bottom] = MARGIN.map(|mm| mm * SCALE);
     let view = View { origin: Point2::new(left, top), scale: SCALE / MM };
     let Outline { length, width, clamped, .. } = geometry.finger.outline;
     let [long, wide] = [length, width].map(|size| size * view.scale);
     let mut drawing = Drawing::default();
     drawing.white_background();
-    caption(&mut drawing, geometry, force, bent.exaggeration);
+    caption(&mut drawing, geometry, bent.exaggeration);
     let boundary = bent.meshed.mesh.boundary();
     let mut shape = |at: &dyn Fn(usize) -> Point2<f64>, colour| {
         let ring = |ring: &Vec<usize>| ring.iter().map(|&node| view.place(at(node))).collect();
@@ -67,13 +69,14 @@ struct BentFinger {
 }
 
 impl BentFinger {
-    fn new(geometry: &Geometry, [y, z]: [f64; 2]) -> Result<Self, MeshError> {
+    fn new(geometry: &Geometry) -> Result<Self, MeshError> {
         let meshed = MeshedFinger::new(geometry, SIZE)?;
         let element = PlaneStress(Slab::of(&geometry.finger));
         let condensed = condense(&meshed.mesh, &element, &meshed.roles, true)?;
         let held = meshed.rigid_motion(&condensed, &element, RigidFace::Pad)?;
         let stiffness =
             PlanarStiffness::new(held.stiffness).ok_or(MeshError::NotPositiveDefinite)?;
+        let [y, z] = GRASP;
         let motion = stiffness.compliance * Vector3::new(y, z, 0.0);
         let displacements = condensed.expand(&(&held.displacements * motion));
         let largest = displacements.iter().fold(0.0, |most: f64, d| most.max(d.abs()));
@@ -101,8 +104,8 @@ fn round_down(value: f64) -> f64 {
     [5.0, 2.0, 1.0].map(|step| step * decade).into_iter().find(|&n| n <= value).unwrap_or(decade)
 }
 
-fn caption(drawing: &mut Drawing, geometry: &Geometry, [y, z]: [f64; 2], factor: f64) {
-    let (name, design) = (&geometry.finger.name, &geometry.design);
+fn caption(drawing: &mut Drawing, geometry: &Geometry, factor: f64) {
+    let (name, design, [y, z]) = (&geometry.finger.name, &geometry.design, GRASP);
     let title = format!(
         "{name}: infill {} %, {}°; {y:.1} N in y and {z:.1} N in z on the pad",
         design.density_percent, design.direction_deg

@@ -212,7 +212,6 @@ pub static NUMBERS: &[NumberSpec] = &[
     // A standard deviation needs two samples.
     fixed("uncertainty.robust_range.samples", 2.0, 1e5),
     fixed("uncertainty.robust_range.sd_factor", 0.0, 100.0),
-    fixed("uncertainty.robust_range.tail_percent", 1e-4, 99.9999),
 ];
 
 impl NumberSpec {

@@ -28,11 +28,7 @@ pub(crate) const TERMS: [(&str, &str); 12] = [
         "peak force",
         "largest contact force between plug and socket over the inserted trials of the window",
     ),
-    (
-        "robust range",
-        "range under sampled errors: mean minus one standard deviation, or the mean of the lower \
-         tail",
-    ),
+    ("robust range", "range under sampled errors: mean minus one standard deviation"),
 ];
 
 /// Returns a text as HTML, with an explanation of each term.

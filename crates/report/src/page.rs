@@ -73,7 +73,6 @@ fn sections(answer: &Answer, files: &PageFiles) -> Result<Vec<Section>, ReportEr
         section("maps", "Capture maps", maps),
         section("explore-views", "All designs", explore::section(answer, &files.dir)),
         section("convergence", "Convergence", Some(convergence::section(record, PLOT)?)),
-        section("failures", "How the trials ended", Some(provenance::outcomes(record))),
         section("provenance", "Provenance", Some(provenance::section(answer))),
     ];
     Ok(sections.into_iter().flatten().collect())

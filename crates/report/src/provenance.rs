@@ -1,10 +1,9 @@
-//! Outcomes of all trials of a study, and its provenance.
+//! Provenance of a study, and further numbers of the recommended finger.
 
-use super::elements::{definitions, table};
-use crate::answer::{Answer, command, lines, words};
-use insertion::{Evaluation, FailureClass, Outcome};
+use super::elements::definitions;
+use crate::answer::{Answer, command, lines};
 use maud::{Markup, html};
-use study::{Provenance, Recorded, StudyRecord};
+use study::{Provenance, StudyRecord};
 
 /// Names of lines that are omitted here, because other sections of the page show them.
 const ELSEWHERE: [&str; 8] = [
@@ -36,40 +35,6 @@ pub(super) fn section(answer: &Answer) -> Markup {
             "The same study again, in its folder:"
         }
         pre { code { (command::rerun(answer.record).join(" ")) } }
-    }
-}
-
-/// Returns the table of the outcomes of all trials.
-pub(super) fn outcomes(record: &StudyRecord) -> Markup {
-    let searches = || record.evaluations.iter().flat_map(Recorded::tasks);
-    let count = |of: &dyn Fn(&Evaluation) -> u32| -> u64 {
-        searches().map(|found| u64::from(of(found))).sum()
-    };
-    let trials = count(&|found| found.trials);
-    let failed = count(&|found| found.failure_counts.iter().sum());
-    let diverged = count(&|found| found.diverged);
-    let row = |outcome: Outcome| {
-        let count = match outcome {
-            Outcome::Failed(class) => count(&|found| found.failure_counts[class as usize]),
-            Outcome::Diverged => diverged,
-            Outcome::Inserted => trials.saturating_sub(failed + diverged),
-        };
-        let share = match trials {
-            0 => "–".to_owned(),
-            _ => format!("{:.1} %", 100.0 * count as f64 / trials as f64),
-        };
-        vec![words::outcome(outcome), count.to_string(), share]
-    };
-    let outcomes = FailureClass::ALL.map(Outcome::Failed).into_iter();
-    let rows = outcomes.chain([Outcome::Diverged, Outcome::Inserted]).map(row);
-    let at_nominal = searches().filter(|found| found.window.nominal != Outcome::Inserted);
-    html! {
-        p {
-            (trials) " trials in " (searches().count()) " window searches, of which " (at_nominal.count())
-            " do not insert at the nominal start. A window search stops at the failures \
-            next to the window, so these counts are not probabilities of failure."
-        }
-        (table(&["outcome", "trials", "share"], rows))
     }
 }
 

@@ -1,4 +1,4 @@
-//! Sensitivity of a measure to its inputs: table, JSON and chart.
+//! Sensitivity of the range to its inputs: table, JSON and chart.
 
 use super::chart::{Area, DrawResult, HPos, VPos, render, rows, text_style};
 use super::marks::{bar, label, line};
@@ -15,8 +15,6 @@ use serde::Serialize;
 pub struct SensitivityResult {
     /// Name of the task.
     pub task: String,
-    /// Name of the measure whose variance is analysed.
-    pub objective: String,
     /// Number of simulated windows.
     pub evaluations: usize,
     /// Number of windows whose nominal start diverged; they count as 0.
@@ -27,36 +25,25 @@ pub struct SensitivityResult {
     pub factors: Vec<Factor>,
 }
 
-/// Input: path, bounds in its unit, and first-order and total Sobol index, each with its 95 % interval.
+/// Input: path, bounds in its unit, and Sobol indices.
 #[derive(Debug, Clone, Serialize)]
 pub struct Factor {
     name: String,
     low: f64,
     high: f64,
-    first: f64,
-    first_low: f64,
-    first_high: f64,
-    total: f64,
-    total_low: f64,
-    total_high: f64,
+    #[serde(flatten)]
+    indices: Indices,
 }
 
 impl Factor {
     /// Returns the factors of these inputs, largest total index first.
     pub fn sorted(inputs: &[Parameter], indices: &[Indices]) -> Vec<Self> {
-        let factor = |(input, Indices { first, total }): (&Parameter, &Indices)| Factor {
-            name: input.path.to_string(),
-            low: input.low,
-            high: input.high,
-            first: first.value,
-            first_low: first.low,
-            first_high: first.high,
-            total: total.value,
-            total_low: total.low,
-            total_high: total.high,
+        let factor = |(input, &indices): (&Parameter, &Indices)| {
+            let (name, low, high) = (input.path.to_string(), input.low, input.high);
+            Factor { name, low, high, indices }
         };
         let mut factors: Vec<_> = inputs.iter().zip(indices).map(factor).collect();
-        factors.sort_by(|a, b| b.total.total_cmp(&a.total));
+        factors.sort_by(|a, b| b.indices.total.total_cmp(&a.indices.total));
         factors
     }
 }
@@ -66,9 +53,10 @@ pub fn text(found: &SensitivityResult) -> String {
     let head = ["input", "total", "95 %", "alone", "95 %"];
     let interval = |low: f64, high: f64| format!("{low:.2} to {high:.2}");
     let rows = found.factors.iter().map(|factor| {
-        let [total, first] = [factor.total, factor.first].map(|share| format!("{share:.2}"));
-        let of_total = interval(factor.total_low, factor.total_high);
-        let of_first = interval(factor.first_low, factor.first_high);
+        let Indices { first, first_low, first_high, total, total_low, total_high } = factor.indices;
+        let (of_total, of_first) =
+            (interval(total_low, total_high), interval(first_low, first_high));
+        let [total, first] = [total, first].map(|share| format!("{share:.2}"));
         [short(&factor.name).to_owned(), total, of_total, first, of_first]
     });
     let table = text_table(1, head, rows);
@@ -78,11 +66,11 @@ pub fn text(found: &SensitivityResult) -> String {
         .map(|(count, what)| format!("; {count} {what} at the nominal start and count as 0"))
         .collect();
     format!(
-        "{} of {}: inputs by influence\n{table}\
+        "range of {}: inputs by influence\n{table}\
          total: share of the variance that remains if all others are fixed (total index)\n\
          alone: share that vanishes if this one is fixed (first-order index)\n\
          {} windows simulated{zeros}\n",
-        found.objective, found.task, found.evaluations
+        found.task, found.evaluations
     )
 }
 
@@ -106,26 +94,28 @@ pub fn svg(found: &SensitivityResult) -> Result<String, ReportError> {
 
 fn draw(area: &Area<'_>, found: &SensitivityResult) -> DrawResult {
     let factors = &found.factors;
-    let largest = factors.iter().map(|of| of.total_high.max(of.total)).fold(1e-9, f64::max);
-    let title = format!("{} of {}: shares of the variance", found.objective, found.task);
+    let highest = |factor: &Factor| factor.indices.total_high.max(factor.indices.total);
+    let largest = factors.iter().map(highest).fold(1e-9, f64::max);
+    let title = format!("range of {}: shares of the variance", found.task);
     let note =
         "share of the variance; light bar: total index, line: its 95 % interval; dark: first-order";
     let mut chart = rows(area, &title, (note, 0.0..1.1 * largest), factors.len(), LEFT)?;
     for (row, factor) in factors.iter().enumerate() {
         let y = -0.5 - row as f64;
-        let shares = [(factor.total, 0.3, BLUE, 0.6), (factor.first, 0.15, INK, 0.7)];
+        let Indices { first, total, total_low, total_high, .. } = factor.indices;
+        let shares = [(total, 0.3, BLUE, 0.6), (first, 0.15, INK, 0.7)];
         for (share, half, colour, opacity) in shares {
             let style = colour.rgb.mix(opacity).filled();
             bar(&mut chart, [0.0, share.max(0.0)], [y - half, y + half], style)?;
         }
-        let [low, high] = [factor.total_low, factor.total_high].map(|share| (share.max(0.0), y));
+        let [low, high] = [total_low, total_high].map(|share| (share.max(0.0), y));
         line(&mut chart, vec![low, high], INK.rgb.stroke_width(2), "")?;
         let name = short(&factor.name);
         let name = format!("{name} ({} to {})", thousandths(factor.low), thousandths(factor.high));
         let style = text_style(13, INK, HPos::Right, VPos::Center);
         label(&mut chart, (0.0, y), (-8, 0), &name, &style)?;
         let style = text_style(14, INK, HPos::Left, VPos::Center);
-        label(&mut chart, high, (8, 0), &format!("{:.2}", factor.total), &style)?;
+        label(&mut chart, high, (8, 0), &format!("{total:.2}"), &style)?;
     }
     Ok(())
 }

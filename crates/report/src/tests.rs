@@ -104,7 +104,7 @@ fn at_nominal(index: u64, infill: [f64; 2], nominal: Outcome) -> Recorded {
 /// Returns the page of a study after checking that it has its sections and loads nothing from elsewhere.
 fn whole(study: &StudyRecord) -> String {
     let page = html(study);
-    for id in ["convergence", "failures", "provenance"] {
+    for id in ["convergence", "provenance"] {
         assert_eq!(page.matches(&format!("<section id=\"{id}\">")).count(), 1, "{id}");
     }
     for word in ["http:", "https:", "@import", "url(", "src=", "NaN", "inf "] {
@@ -138,8 +138,6 @@ fn the_page_is_whole_and_its_numbers_are_the_records() {
     ] {
         assert!(html.contains(&number), "{number}");
     }
-    let trials: u32 = study.evaluations.iter().map(|r| r.tasks[0].trials).sum();
-    assert!(html.contains(&format!("{trials} trials in 60 window searches")));
     assert_eq!(html.matches("<div role=\"img\"").count(), 2, "the finger and the convergence");
     assert_eq!(html.matches("<script").count(), 2, "the data and what shows it");
     assert!(html.contains("default-src 'none'"));

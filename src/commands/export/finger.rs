@@ -1,7 +1,7 @@
 //! `optimize export finger`: exports a finger for printing.
 
 use crate::setup::film::extension;
-use crate::setup::printed::PrintRequest;
+use crate::setup::printed::{PrintChoice, PrintRequest};
 use crate::studies::study_name;
 use crate::{Context, Failure, Output, command};
 use clap::ValueEnum;
@@ -14,7 +14,7 @@ use finray::mechanics;
 use serde::Serialize;
 use std::collections::BTreeSet;
 use std::fmt::Display;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use study::write_file;
 
 /// Export a finger for the printer: the best of a study, or one with a given infill
@@ -66,25 +66,21 @@ pub struct Written {
 
 impl command::Request for Request {
     fn run(&self, context: &Context<'_>) -> Result<Output, Failure> {
-        let geometry = self.finger.geometry()?;
-        self.finger.notes()?.iter().for_each(|note| context.note(note));
-        let (out, title) = (&self.out, export::title(&geometry));
-        let failure = |error: &dyn Display| Failure::running(format!("{}: {error}", out.display()));
-        let project = |bytes: Result<Vec<u8>, PrismError>| -> Result<(), Failure> {
-            Ok(write_file(out, &bytes.map_err(|error| failure(&error))?)?)
-        };
+        let chosen = self.finger.chosen()?;
+        chosen.notes.iter().for_each(|note| context.note(note));
+        let geometry = &chosen.geometry;
+        let (out, title) = (&self.out, export::title(geometry));
         match self.format()? {
             Format::Stl => {
-                write_file(out, &closed(Prism::finger(&geometry), &geometry)?.stl(&title))?
+                write_file(out, &closed(Prism::finger(geometry), geometry)?.stl(&title))?
             }
             Format::ThreeMf => {
-                let bytes = closed(Prism::finger(&geometry), &geometry)?.three_mf(&title);
-                write_file(out, &bytes.map_err(|error| failure(&error))?)?;
+                save(out, closed(Prism::finger(geometry), geometry)?.three_mf(&title))?;
             }
-            Format::PrusaslicerProject => project(slicer::prusaslicer_project(&geometry))?,
-            Format::OrcaslicerProject => project(slicer::orcaslicer_project(&geometry))?,
-            Format::Dxf => write_file(out, &profile::dxf(&geometry, &title))?,
-            Format::Sheet => write_file(out, &draw_sheet(&self.finger, &geometry)?)?,
+            Format::PrusaslicerProject => save(out, slicer::prusaslicer_project(geometry))?,
+            Format::OrcaslicerProject => save(out, slicer::orcaslicer_project(geometry))?,
+            Format::Dxf => write_file(out, &profile::dxf(geometry, &title))?,
+            Format::Sheet => write_file(out, &draw_sheet(self.finger.dir.as_deref(), &chosen)?)?,
         }
         let text = format!("wrote {title}: {}\n", out.display());
         Ok(Output::new(text, Written { out: out.clone(), title }))
@@ -131,15 +127,21 @@ impl Format {
     }
 }
 
+/// Writes the bytes of a file.
+fn save(out: &Path, bytes: Result<Vec<u8>, impl Display>) -> Result<(), Failure> {
+    let bytes = bytes.map_err(|error| Failure::running(format!("{}: {error}", out.display())))?;
+    Ok(write_file(out, &bytes)?)
+}
+
 /// Adds the finger file to the error of a surface that cannot be closed.
 fn closed(prism: Result<Prism, PrismError>, geometry: &Geometry) -> Result<Prism, Failure> {
     prism.map_err(|error| Failure::usage(format!("{}: {error}", geometry.finger.file)))
 }
 
 /// Draws the sheet of a finger.
-fn draw_sheet(request: &PrintRequest, geometry: &Geometry) -> Result<String, Failure> {
-    let ribs = mechanics::compute(geometry)?;
-    let measured = request.predicted_stiffness()?.map(|prediction| prediction.at_pad());
-    let origin = &request.dir.as_deref().map_or(String::new(), study_name);
-    Ok(sheet::html(geometry, &SheetData { origin, ribs: &ribs, measured }))
+fn draw_sheet(study: Option<&Path>, chosen: &PrintChoice) -> Result<String, Failure> {
+    let ribs = mechanics::compute(&chosen.geometry)?;
+    let measured = chosen.predicted_stiffness()?.map(|prediction| prediction.at_pad());
+    let origin = &study.map_or(String::new(), study_name);
+    Ok(sheet::html(&chosen.geometry, &SheetData { origin, ribs: &ribs, measured }))
 }

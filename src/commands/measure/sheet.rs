@@ -2,7 +2,6 @@
 
 use crate::commands::trial;
 use crate::setup::finger::InfillRequest;
-use crate::setup::words::parse_pair;
 use crate::{
     Context, Failure, FingerRequest, Output, SetupRequest, TaskSource, command, read_task,
 };
@@ -43,7 +42,9 @@ pub struct Request {
 }
 
 fn infill(text: &str) -> Result<(f64, f64), String> {
-    parse_pair(text).ok_or_else(|| "must be PERCENT,DEG, for example 10,0".to_owned())
+    let pair = text.split_once(',');
+    let pair = pair.and_then(|(a, b)| a.trim().parse().ok().zip(b.trim().parse().ok()));
+    pair.ok_or_else(|| "must be PERCENT,DEG, for example 10,0".to_owned())
 }
 
 impl command::Request for Request {

@@ -93,8 +93,8 @@ mod tests {
     use super::super::stop::Tolerances;
     use super::*;
 
-    /// Returns the populations of all runs but the last.
-    fn populations(f: fn(&[f64]) -> f64, generations: usize) -> Vec<usize> {
+    #[test]
+    fn large_populations_double_and_share_the_budget_with_small_ones() {
         let start = StartBox {
             low: vec![-4.0; 2],
             high: vec![4.0; 2],
@@ -104,21 +104,17 @@ mod tests {
             tolerances: Tolerances::default(),
         };
         let mut cma = Restarts::new(start, 1);
-        let mut populations = Vec::new();
-        for _ in 0..generations {
+        // Populations of all runs but the last.
+        let mut runs = Vec::new();
+        for _ in 0..2000 {
+            let value = |x: &[f64]| libm::sin(x[0]) + libm::cos(x[1]);
             let tell: Vec<_> =
-                cma.ask().into_iter().map(|x| Solution { value: f(&x), x }).collect();
+                cma.ask().into_iter().map(|x| Solution { value: value(&x), x }).collect();
             cma.tell(&tell);
-            if cma.runs > populations.len() as u64 {
-                populations.push(tell.len());
+            if cma.runs > runs.len() as u64 {
+                runs.push(tell.len());
             }
         }
-        populations
-    }
-
-    #[test]
-    fn large_populations_double_and_share_the_budget_with_small_ones() {
-        let runs = populations(|x| libm::sin(x[0]) + libm::cos(x[1]), 2000);
         let large: Vec<usize> = runs.iter().copied().filter(|l| *l >= 12).collect();
         assert!(large.len() >= 2 && runs.len() > large.len(), "{runs:?}");
         assert!(large.windows(2).any(|pair| pair[1] == 2 * pair[0]), "{runs:?}");

@@ -122,7 +122,7 @@ fn errors_about_parts_that_do_not_fit_name_the_key() {
 #[test]
 fn a_picture_shows_every_opening_at_rest_and_under_load() {
     let geometry = infill(20.0, 20.0);
-    let svg = picture::svg(&geometry, [-2.0, 0.0]).unwrap();
+    let svg = picture::svg(&geometry).unwrap();
     assert!(svg.starts_with("<svg") && svg.ends_with("</svg>\n"));
     assert_eq!(svg.matches('Z').count(), 2 * (1 + geometry.voids.len()));
     assert!(svg.contains("displacements × "), "{svg}");

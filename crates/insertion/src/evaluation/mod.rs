@@ -235,7 +235,7 @@ pub struct RobustRange {
     /// Number of trials of all windows.
     #[serde(rename = "robust_trials")]
     pub trials: u32,
-    /// Statistic selected in the settings, mm; `None` with fewer than two ranges.
+    /// Mean minus a number of standard deviations, mm; `None` with fewer than two ranges.
     #[serde(rename = "robust_range_mm", skip_serializing)]
     pub value_mm: Option<f64>,
 }

@@ -47,12 +47,6 @@ impl Frame {
         Placement::new(&self.poses.plug).tilt / DEG
     }
 
-    /// Returns the deflection of a finger, by its index, relative to its jaw, mm; jaw axes.
-    pub fn deflection_mm(&self, finger: usize) -> [f64; 3] {
-        let bent = self.jaws[finger].inverse() * self.poses.fingers[finger];
-        (bent.translation.vector / MM).into()
-    }
-
     /// Transforms all poses, points and the force by a pose.
     pub(super) fn transform(&mut self, by: &Pose) {
         let poses = [&mut self.poses.plug].into_iter().chain(&mut self.poses.latch);

@@ -327,8 +327,9 @@ mod tests {
         assert!(frames.iter().any(pushes));
         // The grip bends both fingers outward.
         let held = frames.iter().find(|frame| frame.time_s > 0.29).unwrap();
-        let [left, right] = [0, 1].map(|finger| held.deflection_mm(finger)[1]);
-        assert!(left < -0.1 && right > 0.1, "{left} and {right}");
+        let bent = |finger: usize| held.jaws[finger].inverse() * held.poses.fingers[finger];
+        let [left, right] = [0, 1].map(|finger| bent(finger).translation.y);
+        assert!(left < -1e-4 && right > 1e-4, "{left} and {right} m");
         // The shift of the start is the same before and after the robot comes to the socket.
         let jump = |pair: &[Frame]| {
             let [a, b] = [&pair[0], &pair[1]].map(|f| f.poses.plug.translation.vector);

@@ -12,30 +12,29 @@ use ask_tell::SobolSequence;
 use ask_tell::statistics::{Moments, quantile, sorted};
 use ask_tell::stream::stream;
 use rand::RngExt;
+use serde::Serialize;
 
 /// Number of bootstrap resamples: enough for the ends of a 95 % interval.
 const RESAMPLES: usize = 1000;
 /// Tail probability on each side of a 95 % interval.
 const TAIL: f64 = 0.025;
 
-/// Estimate with its 95 % percentile bootstrap interval.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Interval {
-    /// Point estimate.
-    pub value: f64,
-    /// Lower end.
-    pub low: f64,
-    /// Upper end.
-    pub high: f64,
-}
-
-/// Sobol indices of an input, dimensionless. Estimates may lie outside 0 .. 1 by sampling error.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// Sobol indices of an input, dimensionless, each with the ends of its 95 % percentile bootstrap interval. Estimates may
+/// lie outside 0 .. 1 by sampling error. The fields are the keys of `--json`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Indices {
     /// First-order index S_i: share of the variance due to this input alone.
-    pub first: Interval,
+    pub first: f64,
+    /// Lower end of its interval.
+    pub first_low: f64,
+    /// Upper end.
+    pub first_high: f64,
     /// Total index S_Ti: share of the variance due to this input and all its interactions.
-    pub total: Interval,
+    pub total: f64,
+    /// Lower end of its interval.
+    pub total_low: f64,
+    /// Upper end.
+    pub total_high: f64,
 }
 
 /// Sample of the unit cube for estimating Sobol indices.
@@ -88,10 +87,10 @@ impl Sample {
             let share = |from, rows: &[usize]| {
                 half_mean_square(from, rows) / variance(of_a, of_b, rows).max(f64::MIN_POSITIVE)
             };
-            Indices {
-                first: bootstrap(rows, seed, |rows| 1.0 - share(of_b, rows)),
-                total: bootstrap(rows, seed, |rows| share(of_a, rows)),
-            }
+            let [first, first_low, first_high] =
+                bootstrap(rows, seed, |rows| 1.0 - share(of_b, rows));
+            let [total, total_low, total_high] = bootstrap(rows, seed, |rows| share(of_a, rows));
+            Indices { first, first_low, first_high, total, total_low, total_high }
         };
         Some(mixed.chunks(rows).enumerate().map(of).collect())
     }
@@ -102,15 +101,15 @@ fn variance(of_a: &[f64], of_b: &[f64], rows: &[usize]) -> f64 {
     Moments::of(rows.iter().flat_map(|&row| [of_a[row], of_b[row]])).sample_variance()
 }
 
-/// Computes `statistic` over all rows, and its interval by resampling the rows.
-fn bootstrap(rows: usize, seed: u64, statistic: impl Fn(&[usize]) -> f64) -> Interval {
+/// Computes `statistic` over all rows, and the ends of its interval by resampling the rows.
+fn bootstrap(rows: usize, seed: u64, statistic: impl Fn(&[usize]) -> f64) -> [f64; 3] {
     let every: Vec<usize> = (0..rows).collect();
     let mut random = stream(seed, rows as u64, "sensitivity bootstrap");
     let mut resample =
         || -> Vec<usize> { every.iter().map(|_| random.random_range(0..rows)).collect() };
     let found = sorted((0..RESAMPLES).map(|_| statistic(&resample())));
     let at = |share: f64| quantile(&found, share).unwrap_or(f64::NAN);
-    Interval { value: statistic(&every), low: at(TAIL), high: at(1.0 - TAIL) }
+    [statistic(&every), at(TAIL), at(1.0 - TAIL)]
 }
 
 #[cfg(test)]
@@ -126,9 +125,9 @@ mod tests {
 
     fn close(found: &[Indices], first: &[f64], total: &[f64], error: f64) {
         for (i, found) in found.iter().enumerate() {
-            assert!((found.first.value - first[i]).abs() < error, "{i}: {found:?}");
-            assert!((found.total.value - total[i]).abs() < error, "{i}: {found:?}");
-            assert!(found.total.low <= found.total.value && found.total.value <= found.total.high);
+            assert!((found.first - first[i]).abs() < error, "{i}: {found:?}");
+            assert!((found.total - total[i]).abs() < error, "{i}: {found:?}");
+            assert!(found.total_low <= found.total && found.total <= found.total_high);
         }
     }
 
@@ -167,8 +166,8 @@ mod tests {
         let held = (0..60).filter(|&seed| {
             let sample = Sample::new(2, 128, seed);
             let values: Vec<f64> = sample.points().iter().map(|u| u[0] + 0.5 * u[1]).collect();
-            let total = sample.indices(&values).unwrap()[0].total;
-            total.low <= 0.8 && 0.8 <= total.high
+            let found = sample.indices(&values).unwrap()[0];
+            found.total_low <= 0.8 && 0.8 <= found.total_high
         });
         assert!(held.count() >= 53);
     }

@@ -26,7 +26,8 @@ const TILT: f64 = -0.02;
 const TOUCHES: f64 = 0.01;
 const LIMIT: f64 = 50.0;
 
-pub(super) fn base() -> Assembly {
+/// Returns a peg 8 mm wide on springs, whose centre lies 21 mm above its tip, over a hole with a chamfer.
+pub fn base() -> Assembly {
     let chamfer = Chamfer { width: FOOT, angle: 45.0 * DEG };
     Assembly {
         peg: Peg { half_width: 4.0 * MM, radius: 0.0 },

@@ -22,9 +22,9 @@ use nalgebra::{Point3, Translation3, UnitQuaternion, Vector3};
 pub use check::forms;
 pub use compare::{Agreement, Case, agreement, table};
 pub use engines::engine;
-pub use forms::sharp;
+pub use forms::{base, sharp};
 pub use round::Rounding;
-pub use rounded::rounded;
+pub use rounded::{rounded, slim};
 pub use yaw::{turned, yaw};
 
 /// Mass of the peg, kg.

@@ -17,7 +17,7 @@ const ANGLE: Tolerance = Tolerance::Absolute(0.01);
 const BISECTIONS: usize = 11;
 
 /// Returns the peg 7 mm wide in 7.1 mm.
-fn slim(rho: f64, rim: f64, friction: f64) -> Assembly {
+pub fn slim(rho: f64, rim: f64, friction: f64) -> Assembly {
     Assembly {
         peg: Peg { half_width: 3.5 * MM, radius: rho * MM },
         hole: Hole { half_width: 3.55 * MM, radius: rim * MM, chamfer: None },

@@ -4,7 +4,8 @@ mod rounded;
 mod sample;
 mod small;
 
-use analytic_checks::planar::{Assembly, Hole, Peg, Support};
+use analytic_checks::planar::Assembly;
+use analytic_checks::slab;
 use ask_tell::stream::stream;
 use rand::{Rng, RngExt};
 
@@ -22,13 +23,9 @@ pub fn close(found: f64, expected: f64, what: &str) {
 
 /// Lateral 2.6 N/mm, angular 2000 N mm/rad about a centre 21 mm above the tip of a peg 8 mm wide.
 pub fn base() -> Assembly {
-    Assembly {
-        peg: Peg { half_width: 4.0 * MM, radius: 0.0 },
-        hole: Hole { half_width: 4.05 * MM, radius: 0.0, chamfer: None },
-        friction: 0.2,
-        support: Support { lateral: 2600.0, axial: 4e4, angular: 2.0, centre: 21.0 * MM },
-        compliance: 0.0,
-    }
+    let mut assembly = slab::base();
+    assembly.hole.chamfer = None;
+    assembly
 }
 
 /// Varies friction, clearance and the radii of a case.

@@ -1,10 +1,11 @@
 //! Forms 6 to 10, which are exact.
 
-use crate::{ALLOWED, DEG, MM, base, cases, close};
+use crate::{ALLOWED, DEG, MM, cases, close};
 use analytic_checks::planar::{
-    Assembly, Feature, Geometry, Hole, Insertion, Outcome, Peg, TWO_POINT, Trial, V2, cone_margin,
+    Assembly, Feature, Geometry, Insertion, Outcome, TWO_POINT, Trial, V2, cone_margin,
     two_point_pose,
 };
+use analytic_checks::slab::slim;
 use ask_tell::stream::stream;
 use rand::RngExt;
 
@@ -15,16 +16,6 @@ fn two_point_depth(assembly: &Assembly, tilt: f64) -> f64 {
     let (sin, cos) = libm::sincos(tilt);
     let across = 2.0 * wide + rim - rho - (r - rho) * cos + rho * sin;
     rim + (across * cos - r - rim) / sin
-}
-
-/// The peg of forms 6 and 7, 7 mm wide in 7.1 mm.
-fn slim(rho: f64, rim: f64, friction: f64) -> Assembly {
-    Assembly {
-        peg: Peg { half_width: 3.5 * MM, radius: rho * MM },
-        hole: Hole { half_width: 3.55 * MM, radius: rim * MM, chamfer: None },
-        friction,
-        ..base()
-    }
 }
 
 /// Form 6: exact depth of two-point contact with radii.

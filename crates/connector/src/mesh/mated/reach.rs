@@ -1,5 +1,6 @@
 //! Faces that the other body can touch on the way to the mated pose.
 
+use super::verify::samples;
 use crate::body::{extent, span};
 use crate::mesh::Triangle;
 use input::units::MM;
@@ -41,16 +42,9 @@ impl UpperEnvelope {
         let heights = vec![f64::NEG_INFINITY; size[0] * size[1]];
         let mut map = UpperEnvelope { low, cell, size, heights };
         for triangle in triangles {
-            let [a, b, c] = *triangle;
-            let long = (b - a).norm().max((c - a).norm()).max((c - b).norm());
-            let steps = ((long / (0.7 * cell)).ceil() as usize).max(1);
-            for i in 0..=steps {
-                for j in 0..=steps - i {
-                    let (u, v) = (i as f64 / steps as f64, j as f64 / steps as f64);
-                    let p = a + (b - a) * u + (c - a) * v;
-                    let at = map.index([p.x, p.y]);
-                    map.heights[at] = map.heights[at].max(sign * p.z);
-                }
+            for p in samples(triangle, 0.7 * cell, usize::MAX, 0.0) {
+                let at = map.index([p.x, p.y]);
+                map.heights[at] = map.heights[at].max(sign * p.z);
             }
         }
         map

@@ -98,8 +98,8 @@ impl<'a> Drawn<'a> {
     pub fn deviations(&self, kept: &[Triangle], parts: &[Part]) -> Vec<Deviation> {
         let body = ConvexBody::new(parts);
         let uncovered = |triangle: &Triangle| -> Vec<Deviation> {
-            let bare =
-                samples(triangle).into_iter().filter(|p| body.near(p, TOLERANCE).next().is_none());
+            let samples = samples(triangle, SPACING, MAX_SAMPLES, MARGIN);
+            let bare = samples.filter(|p| body.near(p, TOLERANCE).next().is_none());
             bare.map(|place| Deviation { place, out: None }).collect()
         };
         let mut found: Vec<Deviation> = kept.par_iter().flat_map_iter(uncovered).collect();
@@ -109,18 +109,20 @@ impl<'a> Drawn<'a> {
     }
 }
 
-/// Returns evenly spaced points inside a triangle.
-fn samples([a, b, c]: &Triangle) -> Vec<Point3<f64>> {
+/// Returns evenly spaced points of a triangle, at most `spacing` apart, m, unless that needs more than `most` steps
+/// along a side. `margin` is three times the distance of the outermost points from an edge, as a share of the height
+/// above that edge.
+pub(super) fn samples(
+    &[a, b, c]: &Triangle,
+    spacing: f64,
+    most: usize,
+    margin: f64,
+) -> impl Iterator<Item = Point3<f64>> {
     let longest = (b - a).norm().max((c - a).norm()).max((c - b).norm());
-    let steps = ((longest / SPACING).ceil() as usize).clamp(1, MAX_SAMPLES);
-    let mut found = Vec::new();
-    for i in 0..=steps {
-        for j in 0..=steps - i {
-            let inside = |k: usize| MARGIN / 3.0 + (1.0 - MARGIN) * k as f64 / steps as f64;
-            found.push(a + (b - a) * inside(i) + (c - a) * inside(j));
-        }
-    }
-    found
+    let steps = ((longest / spacing).ceil() as usize).clamp(1, most);
+    let inside = move |k: usize| margin / 3.0 + (1.0 - margin) * k as f64 / steps as f64;
+    let place = move |i, j| a + (b - a) * inside(i) + (c - a) * inside(j);
+    (0..=steps).flat_map(move |i| (0..=steps - i).map(move |j| place(i, j)))
 }
 
 /// Returns the generalized winding number of oriented triangles about a point (Jacobson et al. 2013): 1 inside, 0

@@ -4,12 +4,9 @@ pub mod firm;
 pub mod race;
 pub mod repeat;
 
-use crate::evaluation::uncertainty::{
-    Draw, RobustSettings, Statistic, SuccessSettings, Uncertainty, draws,
-};
+use crate::evaluation::uncertainty::{Draw, RobustSettings, SuccessSettings, Uncertainty, draws};
 use crate::evaluation::{RobustRange, SuccessRate, tolerance};
 use crate::{Evaluation, Finger, Grasp, Outcome, Prediction, Priors, Rig, Search};
-use ask_tell::statistics::{mean, sorted};
 use race::Race;
 use rayon::prelude::*;
 
@@ -102,30 +99,15 @@ fn robust_range(drawn: &[Insertion], settings: &RobustSettings) -> RobustRange {
     let diverged = (windows.len() - ranges_mm.len()) as u32;
     let trials = windows.iter().map(|draw| draw.trials).sum();
     let mut robust = RobustRange { ranges_mm, diverged, trials, value_mm: None };
-    robust.value_mm = statistic(&robust, settings.statistic);
+    robust.value_mm = (robust.ranges_mm.len() > 1)
+        .then(|| robust.mean_mm() - settings.sd_factor * robust.sd_mm());
     robust
-}
-
-/// Returns the statistic of the ranges, mm; `None` with fewer than two ranges.
-fn statistic(robust: &RobustRange, statistic: Statistic) -> Option<f64> {
-    let count = robust.ranges_mm.len();
-    if count < 2 {
-        return None;
-    }
-    Some(match statistic {
-        Statistic::MeanMinusSd(factor) => robust.mean_mm() - factor * robust.sd_mm(),
-        Statistic::LowerTail(level) => {
-            let tail = ((level * count as f64).round() as usize).max(1);
-            mean(&sorted(robust.ranges_mm.iter().copied())[..tail])?
-        }
-    })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::evaluation::grid_mm;
-    use crate::evaluation::tests::ranges;
     use crate::tests::fake::{FakeRig, window_mm};
     use crate::tests::fixtures::{finger, predicted, typical};
     use input::units::MM;
@@ -159,19 +141,10 @@ mod tests {
     }
 
     #[test]
-    fn the_statistics_worked_by_hand() {
-        let three = ranges(vec![7.0, 3.0, 5.0]);
-        assert_eq!(statistic(&three, Statistic::MeanMinusSd(1.5)), Some(2.0));
-        assert_eq!(statistic(&three, Statistic::LowerTail(0.1)), Some(3.0));
-        assert_eq!(statistic(&three, Statistic::LowerTail(0.67)), Some(4.0));
-        assert_eq!(statistic(&ranges(vec![7.0]), Statistic::LowerTail(0.1)), None);
-    }
-
-    #[test]
     fn each_range_is_that_of_its_own_window() {
         let rig = FakeRig::default();
         let (typical, drawn) = drawn(&rig, 60.0, 12);
-        let settings = RobustSettings { search: Search::Strides, ..typical.robust };
+        let settings = RobustSettings { search: Search::Strides, sd_factor: 1.5, ..typical.robust };
         let found = robust_range(&drawn, &settings);
         let expected: Vec<f64> = drawn
             .iter()
@@ -185,6 +158,7 @@ mod tests {
             .collect();
         assert_eq!(found.ranges_mm, expected);
         assert!(found.sd_mm() > 0.3, "{found:?}");
-        assert_eq!(found.value_mm, Some(found.mean_mm() - found.sd_mm()));
+        assert_eq!(found.value_mm, Some(found.mean_mm() - 1.5 * found.sd_mm()));
+        assert_eq!(robust_range(&drawn[..1], &settings).value_mm, None);
     }
 }

@@ -60,24 +60,25 @@ pub struct SuccessSettings {
 }
 
 /// Settings of a robust-range measurement.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct RobustSettings {
     /// Number of tolerance windows per design.
     pub samples: u32,
     /// Statistic of the widths of the windows.
     pub statistic: Statistic,
+    /// Number of standard deviations that are subtracted.
+    pub sd_factor: f64,
     /// Search for the ends of each window.
     pub search: Search,
 }
 
 /// Statistic of a sample of ranges (widths of tolerance windows).
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Statistic {
-    /// Mean minus this number of standard deviations.
-    MeanMinusSd(f64),
-    /// Mean of the lowest ranges (conditional value at risk); the value is their share of the sample, 0 to 1. At least
-    /// one range is used.
-    LowerTail(f64),
+    /// Mean minus a number of standard deviations.
+    MeanMinusSd,
 }
 
 /// Keys of an uncertainty file, converted to SI units.
@@ -93,7 +94,7 @@ struct RawUncertainty {
     clearance: ClearanceSpread,
     grasp: GraspSpread,
     success_rate: SuccessSettings,
-    robust_range: RawRobust,
+    robust_range: RobustSettings,
 }
 
 /// Spread of the position of the start.
@@ -161,24 +162,6 @@ pub struct GraspSpread {
     source: String,
 }
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RawRobust {
-    samples: u32,
-    statistic: RawStatistic,
-    sd_factor: Option<f64>,
-    #[serde(rename = "tail_percent", default, deserialize_with = "percent")]
-    tail: Option<f64>,
-    search: Search,
-}
-
-#[derive(Deserialize, Clone, Copy)]
-#[serde(rename_all = "kebab-case")]
-enum RawStatistic {
-    MeanMinusSd,
-    LowerTail,
-}
-
 impl Uncertainty {
     /// Reads and checks a distribution; `file` is named in errors. The text may also be a cell file: its parameters are
     /// drawn from their priors, all other errors are 0, and the settings are those of the shipped uncertainty file.
@@ -197,7 +180,7 @@ impl Uncertainty {
         Ok(Uncertainty {
             errors: Errors { offset, yaw, friction, stiffness, clearance, grasp },
             success: raw.success_rate,
-            robust: raw.robust_range.settings(Check { file })?,
+            robust: raw.robust_range,
             name: raw.name,
             description: raw.description,
             cell: None,
@@ -222,24 +205,6 @@ impl Uncertainty {
     }
 }
 
-impl RawRobust {
-    fn settings(&self, check: Check<'_>) -> Result<RobustSettings, InputError> {
-        let statistic = match (self.statistic, self.sd_factor, self.tail) {
-            (RawStatistic::MeanMinusSd, Some(factor), None) => Ok(Statistic::MeanMinusSd(factor)),
-            (RawStatistic::LowerTail, None, Some(level)) => Ok(Statistic::LowerTail(level)),
-            (RawStatistic::MeanMinusSd, ..) => {
-                Err("\"mean-minus-sd\" requires sd_factor and excludes tail_percent")
-            }
-            (RawStatistic::LowerTail, ..) => {
-                Err("\"lower-tail\" requires tail_percent and excludes sd_factor")
-            }
-        };
-        let statistic =
-            statistic.or_else(|problem| check.fail("robust_range.statistic", problem))?;
-        Ok(RobustSettings { samples: self.samples, statistic, search: self.search })
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -253,7 +218,7 @@ mod tests {
         assert_eq!(typical.name, "typical");
         assert!((typical.errors.offset.sd - 2e-3).abs() < 1e-15);
         assert!((typical.errors.friction.half_width - 0.2).abs() < 1e-15);
-        assert_eq!(typical.robust.statistic, Statistic::MeanMinusSd(1.0));
+        assert_eq!(typical.robust.sd_factor, 1.0);
     }
 
     #[test]
@@ -271,7 +236,8 @@ mod tests {
             ("trials = 100", "trials = 0", "success_rate.trials", "1 .."),
             ("samples = 12", "samples = 1", "robust_range.samples", "2 .."),
             ("percent = 95.0", "percent = 100.0", "confidence", "must lie in"),
-            ("\nsd_factor = 1.0\n#", "\ntail_percent = 10.0\n#", "range.statistic", "sd_factor"),
+            ("\nsd_factor = 1.0\n#", "\ntail_percent = 10.0\n#", "tail_percent", "sd_factor"),
+            ("\"mean-minus-sd\"\nsd", "\"lower-tail\"\nsd", "lower-tail", "mean-minus-sd"),
             ("sd_deg = 1.0", "sd_rad = 1.0", "sd_rad", "sd_deg"),
             ("search = \"walk\"", "search = \"run\"", "run", "walk"),
         ] {
@@ -279,9 +245,5 @@ mod tests {
             assert_ne!(text, good, "{from}");
             refused(Uncertainty::parse(&text, "u.toml"), &[key, word, "u.toml"]);
         }
-        let tail =
-            good.replace("mean-minus-sd\"\nsd_factor = 1.0", "lower-tail\"\ntail_percent = 10.0");
-        let tail = Uncertainty::parse(&tail, "u").unwrap();
-        assert_eq!(tail.robust.statistic, Statistic::LowerTail(0.1));
     }
 }

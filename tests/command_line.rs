@@ -41,7 +41,7 @@ fn a_trial_prints_the_promised_keys() {
 fn everything_prints_as_text_too() {
     let evaluate = "evaluate --task usb --density 20 --direction 10";
     let subject = "task          usb\nrobot         servo\ndesign ";
-    fake(evaluate).says(&[subject, "window"]);
+    fake(evaluate).says(&[subject, "window", " N in the trials that insert"]);
     let trial = fake(TRIAL);
     trial.says(&[subject, "inserted"]);
     let rigid = "warning the robot `rigid` does not yield";

@@ -62,6 +62,7 @@ fn where_nothing_inserts_it_is_said_with_what_stopped_the_plug() {
     assert_eq!(found["nearest"]["outcome"], "contact loss before insertion");
     assert!(found["nearest"]["phase"].is_string(), "{found}");
     assert_eq!(read_to_string(&own).unwrap(), weak, "a file is written");
+    optimize(&["task", "check", "usb"]).says(&["in this trial peak force "]);
     optimize(&["task", "tune", &own, "--out", &own]).fails(2, &["own.toml exists"]);
     optimize(&["task", "tune", "usb"]).fails(2, &["name the file to write with --out"]);
 }

@@ -261,8 +261,8 @@ impl Evaluated {
         );
         rest.push(("failures".to_owned(), failures));
         let peak = match evaluation.peak_force_n.is_nan() {
-            true => "none: it is that of the trials that insert".to_owned(),
-            false => number(evaluation.peak_force_n, 1, "N"),
+            true => "none: no trial inserts".to_owned(),
+            false => number(evaluation.peak_force_n, 1, "N in the trials that insert"),
         };
         rest.push(("peak force".to_owned(), peak));
         rest.push(("mating force".to_owned(), words::mating_force(task.largest_mating_force())));

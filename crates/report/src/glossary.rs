@@ -24,10 +24,7 @@ pub(crate) const TERMS: [(&str, &str); 12] = [
         "Ties",
         "designs whose firm range, measured or expected, is smaller by at most --indifference-mm",
     ),
-    (
-        "peak force",
-        "largest contact force between plug and socket over the inserted trials of the window",
-    ),
+    ("peak force", "largest contact force between plug and socket in the trials that insert"),
     (
         "robust range",
         "range under sampled errors: mean minus one standard deviation, or the mean of the lower \

@@ -43,7 +43,7 @@ pub struct Request {
     /// Seed of the search
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub seed: u64,
-    /// Largest force between plug and socket, N [default: limits.force_n of the task, or the robot's stop force]
+    /// Largest peak force in the trials that insert, N [default: limits.force_n of the task, or the robot's stop force]
     #[arg(long, value_name = "N", value_parser = positive)]
     pub max_force_n: Option<f64>,
     /// Largest speed of a phase, mm/s [default: limits.speed_mm_per_s of the task]
@@ -333,7 +333,7 @@ fn text(done: &TunedTask<'_>) -> String {
     lines(all)
 }
 
-/// Returns speed and largest force of the push, before and after tuning, as text.
+/// Returns speed and peak force of the push, before and after tuning, as text.
 fn push_text(TunedTask { tuner, tuned, .. }: &TunedTask<'_>, after_n: f64) -> String {
     let Tuner { task, robot, limits, .. } = tuner;
     let [old, new] = [&task.strategy, &tuned.best().tried.strategy].map(push_speed_mm_per_s);
@@ -347,7 +347,8 @@ fn push_text(TunedTask { tuner, tuned, .. }: &TunedTask<'_>, after_n: f64) -> St
     let above = format!("; a study accepts at most {accepted_n:.1} N (--max-force-n)");
     let above = if after_n > accepted_n { above } else { String::new() };
     format!(
-        "{old:.0} -> {new:.0} mm/s{limited}, largest force {before} -> {after_n:.0} N{limit}{above}"
+        "{old:.0} -> {new:.0} mm/s{limited}, peak force {before} -> {after_n:.0} N{limit} \
+         in the trials that insert{above}"
     )
 }
 

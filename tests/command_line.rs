@@ -284,6 +284,11 @@ fn bad_usage_is_answered_with_2_and_what_would_be_right() {
         ("--task usb --budget 5 --space x.toml", &["x.toml", "space"]),
         ("resume /nowhere", &["/nowhere", "not a study"]),
         ("reprot x", &["report"]),
+        ("evaluate --task usb --density 20 --angle 10", &["exists: '--direction'"]),
+        ("map --task usb --angel 10", &["exists: '--direction'"]),
+        ("--task usb --densty 20", &["'--density' is an option of `optimize evaluate`"]),
+        ("--task usb --angle 20", &["'--direction' is an option of `optimize evaluate`"]),
+        ("trial --task usb --offset 1", &["exists: '--offset-mm'"]),
     ] {
         optimize_line(line).fails(2, parts);
     }

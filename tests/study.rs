@@ -407,13 +407,16 @@ fn a_task_that_no_design_does_ends_with_what_went_wrong() {
 }
 
 #[test]
-fn the_next_command_names_the_file_of_ones_own_task() {
+fn the_next_command_names_the_files_of_ones_own_task_and_robot() {
     let studies = Studies::new();
     let text = include_str!("../tasks/usb.toml").replace("name = \"usb\"", "name = \"mine\"");
     let own = studies.file("mine.toml", text);
-    let more = "--engine fake --budget 4 --no-levers --no-map --json --out";
+    let robot =
+        studies.file("robot.toml", format!("# mine\n{}", include_str!("../robots/servo.toml")));
+    let more =
+        format!("--robot {robot} --engine fake --budget 4 --no-levers --no-map --json --out");
     let found = optimize_line(&format!("--task {own} {more} {}", studies.word("s"))).json();
     let next = &found["answer"]["next"]["command"];
-    let options = "--measurements bench.csv --count 3 --engine fake";
+    let options = format!("--measurements bench.csv --count 3 --robot {robot} --engine fake");
     assert_eq!(next, &format!("optimize next --task {own} {options}"));
 }

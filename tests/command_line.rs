@@ -391,7 +391,13 @@ fn a_number_of_task_or_finger_can_be_set() {
     fake(&format!("{EVALUATE} --set task.strategy.tilt_deg=0.15")).succeeds();
     let metres = ["--set: task.grip.tcp_z_mm: 0.0406 mm", "multiply by 1000: 40.60 mm"];
     fake(&format!("{EVALUATE} --set task.grip.tcp_z_mm=0.0406")).fails(2, &metres);
-    fake("evaluate --task usb --density 20 --direction 0.35").succeeds();
+    for (direction, noted) in [("0.35", true), ("0.3", false)] {
+        let infill = format!("--task usb --density 20 --direction {direction}");
+        for command in ["evaluate", "trial"] {
+            let found = fake(&format!("{command} {infill}")).succeeds().to_owned();
+            assert_eq!(found.contains("are these radians?"), noted, "{found}");
+        }
+    }
     let fraction = ["between 10 and 30 % in the space", "in fractions, multiply by 100: 20.00 %"];
     fake("evaluate --task usb --density 0.2 --direction 10").fails(2, &fraction);
 }

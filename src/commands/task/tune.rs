@@ -36,7 +36,7 @@ pub struct Request {
     /// Robot and contact engine.
     #[command(flatten)]
     pub robot: RobotRequest,
-    /// Largest number of windows to measure; start, shipped strategies and final checks are not shortened
+    /// Largest number of windows to measure, at least 60; start, shipped strategies and final checks are not shortened
     #[arg(long, value_name = "N", default_value_t = DEFAULT_BUDGET,
           value_parser = clap::value_parser!(u16).range(60..=10_000))]
     pub budget: u16,
@@ -357,13 +357,17 @@ fn steps(tuned: &Tuned) -> Vec<(String, String)> {
     let (searched, others): (Vec<&Step>, Vec<&Step>) =
         tuned.steps.iter().partition(|step| step.stage == Stage::Search);
     let best = searched.into_iter().max_by(|a, b| a.tried.score.total_cmp(&b.tried.score));
+    let none = best.is_none().then(|| {
+        let text = "not started: --budget leaves no windows for it";
+        (NAMES[Stage::Search as usize].to_owned(), text.to_owned())
+    });
     let mut seen = None;
     let line = |step: &Step| {
         let repeated = step.stage == Stage::Families && seen.replace(step.stage).is_some();
         let name = if repeated { "" } else { NAMES[step.stage as usize] };
         (name.to_owned(), format!("{}: {}", step.change, outcome(step)))
     };
-    others.into_iter().chain(best).map(line).collect()
+    others.into_iter().chain(best).map(line).chain(none).collect()
 }
 
 /// Names of the stages.

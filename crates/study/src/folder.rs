@@ -222,6 +222,9 @@ impl Study {
     }
 }
 
+/// File with [`StudyRecord::robot_stop`] in the folder of a study.
+pub const ROBOT_STOP_FILE: &str = "robot_stop.json";
+
 impl StudyRecord {
     /// Reads the study in `dir`, which may be running, without writing to it.
     ///
@@ -260,6 +263,7 @@ impl StudyRecord {
             limits,
             firm_values,
             on_bench,
+            robot_stop: read_analysis(dir, ROBOT_STOP_FILE),
             settled,
             confirmation_due,
         }

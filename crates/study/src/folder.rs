@@ -8,6 +8,7 @@
 //! replay/          animations of the trials at both ends of the recommended window
 //! walk.json        confirmation of the best designs
 //! bench.json       prediction for the bench (the real robot) from measurements
+//! robot_stop.json  evaluation that would insert without robot stop, if no design inserts
 //! evaluations.csv  evaluations as a table; convergence.svg and report.html beside it
 //! .lock            lock of the writing process
 //! ```

@@ -132,27 +132,24 @@ fn run(words: &[OsString]) -> Result<ExitCode, Failure> {
     }
 }
 
-/// Adds to the error of an unknown option the nearest one of a command for one finger, or its command if another was
-/// given.
+/// Adds to the error of an unknown option the nearest one of `evaluate`, and names that command if another was given.
 fn with_tip(mut usage: clap::Error, program: &clap::Command, words: &[OsString]) -> clap::Error {
-    let Some(ContextValue::String(unknown)) = usage.get(ContextKind::InvalidArg) else {
+    let (ErrorKind::UnknownArgument, Some(ContextValue::String(unknown))) =
+        (usage.kind(), usage.get(ContextKind::InvalidArg))
+    else {
         return usage;
     };
-    let unknown = unknown.trim_start_matches('-');
-    let longs = |command: &clap::Command| -> Vec<String> {
-        command.get_arguments().filter_map(|arg| arg.get_long().map(str::to_owned)).collect()
+    let own =
+        program.find_subcommand("evaluate").into_iter().flat_map(clap::Command::get_arguments);
+    let names: Vec<&str> = own.filter_map(clap::Arg::get_long).chain(["angle"]).collect();
+    let sure = |near: &&str| *near == "angle" || usage.get(ContextKind::SuggestedArg).is_none();
+    let near = nearest(unknown.trim_start_matches('-'), &names).filter(sure);
+    let Some(near) = near.map(|near| if near == "angle" { "direction" } else { near }) else {
+        return usage;
     };
-    let known = program.find_subcommand("evaluate").map(longs).unwrap_or_default();
-    let names: Vec<&str> = known.iter().map(String::as_str).chain(["angle"]).collect();
-    let sure = |near: &&str| {
-        [unknown, "angle"].contains(near) || usage.get(ContextKind::SuggestedArg).is_none()
-    };
-    let wrong = usage.kind() == ErrorKind::UnknownArgument;
-    let Some(near) = nearest(unknown, &names).filter(sure).filter(|_| wrong) else { return usage };
-    let near = if near == "angle" { "direction" } else { near };
-    if longs(command_of(program, words).1).iter().any(|own| own == near) {
-        let near = ContextValue::String(format!("--{near}"));
-        usage.insert(ContextKind::SuggestedArg, near);
+    let mut given = command_of(program, words).1.get_arguments();
+    if given.any(|arg| arg.get_long() == Some(near)) {
+        usage.insert(ContextKind::SuggestedArg, ContextValue::String(format!("--{near}")));
     } else {
         usage.remove(ContextKind::SuggestedArg);
         let tip = format!("'--{near}' is an option of `optimize evaluate`");

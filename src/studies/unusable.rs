@@ -3,7 +3,7 @@
 use crate::{Failure, Setup, not_stopped};
 use insertion::outcome::{STOP_REMEDY, stop_words};
 use insertion::trial::{Trial, picture};
-use insertion::{Evaluation, Grasp, Outcome, Robot, Scenario, StartRule, Template};
+use insertion::{Grasp, Outcome, Scenario, StartRule};
 use report::answer::words::{outcome, remedy};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
@@ -21,9 +21,9 @@ pub(crate) fn check(
     setup: &Setup,
     stop: &AtomicBool,
 ) -> Result<(), Failure> {
-    let Some((task, nearest)) = record.unusable() else { return Ok(()) };
-    let Some(template) = setup.evaluator.templates.get(task) else { return Ok(()) };
-    let (scenario, trial) = nominal(nearest, (task, template), setup, |_| (), stop)?;
+    let Some((nearest, scenario, trial)) = nominal(record, setup, None, stop)? else {
+        return Ok(());
+    };
     let class = outcome(trial.outcome) + stop_words(trial.robot_stopped);
     let phase =
         trial.phases.last().map_or(String::new(), |phase| format!(" in phase {}", phase.name));
@@ -55,29 +55,27 @@ pub(crate) fn robot_stop(
     setup: &Setup,
     stop: &AtomicBool,
 ) -> Result<Option<u64>, Failure> {
-    let Some((task, nearest)) = record.unusable() else { return Ok(None) };
-    let stopped = nearest.on(task).is_some_and(Evaluation::nominal_stop);
-    let template = setup.evaluator.templates.get(task).filter(|_| stopped);
-    let Some(template) = template else { return Ok(None) };
-    let free = |robot: &mut Robot| robot.stop_force = f64::INFINITY;
-    let (_, trial) = nominal(nearest, (task, template), setup, free, stop)?;
-    Ok((trial.outcome == Outcome::Inserted).then_some(nearest.index))
+    let found = nominal(record, setup, Some(f64::INFINITY), stop)?;
+    let found = found.filter(|(.., trial)| trial.outcome == Outcome::Inserted);
+    Ok(found.map(|(nearest, ..)| nearest.index))
 }
 
-/// Returns the trial of a design at the nominal start of the task at a place, after a change of the robot.
-fn nominal(
-    design: &Recorded,
-    (place, template): (usize, &Template),
+/// Returns the design that is nearest to an insertion, if none inserts, with the trial at its nominal start, optionally
+/// of a robot with another stop force, N.
+fn nominal<'a>(
+    record: &'a StudyRecord,
     Setup { evaluator, .. }: &Setup,
-    change: impl Fn(&mut Robot),
+    stop_force: Option<f64>,
     stop: &AtomicBool,
-) -> Result<(Scenario, Trial), Failure> {
-    let mut scenario = evaluator.scenario(template, &design.design, design.stiffness)?;
-    change(&mut scenario.robot);
-    let taught = design.on(place).and_then(|found| found.taught);
+) -> Result<Option<(&'a Recorded, Scenario, Trial)>, Failure> {
+    let Some((task, nearest)) = record.unusable() else { return Ok(None) };
+    let Some(template) = evaluator.templates.get(task) else { return Ok(None) };
+    let mut scenario = evaluator.scenario(template, &nearest.design, nearest.stiffness)?;
+    scenario.robot.stop_force = stop_force.unwrap_or(scenario.robot.stop_force);
+    let taught = nearest.on(task).and_then(|found| found.taught);
     let rig = evaluator.rig(&scenario, taught, 1.0)?;
     let trial = rig.grasp(Grasp { stop, ..Grasp::of(&scenario.finger) }).trial(0.0);
     not_stopped(stop)?;
     drop(rig);
-    Ok((scenario, trial))
+    Ok(Some((nearest, scenario, trial)))
 }

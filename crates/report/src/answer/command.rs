@@ -52,14 +52,10 @@ impl InputArguments<'_> {
     /// Returns the options of [`Self::changed_setup`] with the user's own robot file in place of its copy.
     fn own_setup(&self) -> Vec<String> {
         let own = &self.record.config.conclusion.robot_file;
-        let copy = format!("--robot {}", self.input("robot", ROBOTS));
-        let own = Some(own)
-            .filter(|own| own.ends_with(".toml") && self.shipped("robot", ROBOTS).is_none());
-        let own = |word: String| match own {
-            Some(own) if word == copy => format!("--robot {}", shell_word(own)),
-            _ => word,
-        };
-        self.changed_setup().into_iter().map(own).collect()
+        let copy = self.input("robot", ROBOTS);
+        let is_own = own.ends_with(".toml") && self.shipped("robot", ROBOTS).is_none();
+        let own = if is_own { shell_word(own) } else { copy.clone() };
+        self.changed_setup().into_iter().map(|word| word.replace(&copy, &own)).collect()
     }
 
     /// Returns the options from the space to the engine that are not the defaults.

@@ -7,6 +7,8 @@ use crate::project::{NO_CONFIG, OptionDefault, Project, with_defaults};
 use crate::terminal::say;
 use crate::{Failure, executor, help};
 use clap::ArgMatches;
+use clap::error::{ContextKind, ContextValue, ErrorKind};
+use input::shipped::nearest;
 use std::ffi::OsString;
 use std::process::ExitCode;
 use std::sync::LazyLock;
@@ -105,10 +107,12 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
 fn run(words: &[OsString]) -> Result<ExitCode, Failure> {
     let (program, defaults) = with_project(program(), words)?;
     let long = words.iter().any(|word| word == "--help");
-    let program = if long { program } else { program.clone().override_help(help::short(&program)) };
-    let matches = match program.try_get_matches_from(words) {
+    let mut program =
+        if long { program } else { program.clone().override_help(help::short(&program)) };
+    let matches = match program.try_get_matches_from_mut(words) {
         Ok(matches) => matches,
         Err(usage) if usage.use_stderr() => {
+            let usage = with_tip(usage, &program, words);
             say(plain_number_errors(&usage.render().to_string()).trim_end());
             return Ok(ExitCode::from(2));
         }
@@ -128,6 +132,46 @@ fn run(words: &[OsString]) -> Result<ExitCode, Failure> {
     }
 }
 
+/// Adds to the error of an unknown option the nearest one of `evaluate`, and names that command if another was given.
+fn with_tip(mut usage: clap::Error, program: &clap::Command, words: &[OsString]) -> clap::Error {
+    let (ErrorKind::UnknownArgument, Some(ContextValue::String(unknown))) =
+        (usage.kind(), usage.get(ContextKind::InvalidArg))
+    else {
+        return usage;
+    };
+    let own =
+        program.find_subcommand("evaluate").into_iter().flat_map(clap::Command::get_arguments);
+    let names: Vec<&str> = own.filter_map(clap::Arg::get_long).chain(["angle"]).collect();
+    let sure = |near: &&str| *near == "angle" || usage.get(ContextKind::SuggestedArg).is_none();
+    let near = nearest(unknown.trim_start_matches('-'), &names).filter(sure);
+    let Some(near) = near.map(|near| if near == "angle" { "direction" } else { near }) else {
+        return usage;
+    };
+    let mut given = command_of(program, words).1.get_arguments();
+    if given.any(|arg| arg.get_long() == Some(near)) {
+        usage.insert(ContextKind::SuggestedArg, ContextValue::String(format!("--{near}")));
+    } else {
+        usage.remove(ContextKind::SuggestedArg);
+        let tip = format!("'--{near}' is an option of `optimize evaluate`");
+        usage.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
+    }
+    usage
+}
+
+/// Returns the command that the words begin with, and its path.
+fn command_of<'a>(
+    program: &'a clap::Command,
+    words: &[OsString],
+) -> (Vec<String>, &'a clap::Command) {
+    let (mut path, mut command) = (Vec::new(), program);
+    let name = |place: usize| words.get(place + 1).and_then(|word| word.to_str());
+    while let Some(below) = name(path.len()).and_then(|name| command.find_subcommand(name)) {
+        path.push(below.get_name().to_owned());
+        command = below;
+    }
+    (path, command)
+}
+
 /// Reports the defaults of the project file on standard error; returns the clap definition with them, and the defaults.
 fn with_project(
     program: clap::Command,
@@ -138,11 +182,7 @@ fn with_project(
         let mut names = texts.iter().filter_map(|word| word.strip_prefix("--")?.split('=').next());
         names.any(|name| name == option)
     };
-    let (mut path, mut command) = (Vec::new(), &program);
-    while let Some(below) = texts.get(path.len()).and_then(|name| command.find_subcommand(name)) {
-        path.push(below.get_name().to_owned());
-        command = below;
-    }
+    let (path, command) = command_of(&program, words);
     let help = ["-h", "--help", "-V", "--version", "help"];
     let aside =
         given(NO_CONFIG) || texts.is_empty() || texts.iter().any(|word| help.contains(word));

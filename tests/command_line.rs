@@ -41,7 +41,7 @@ fn a_trial_prints_the_promised_keys() {
 fn everything_prints_as_text_too() {
     let evaluate = "evaluate --task usb --density 20 --direction 10";
     let subject = "task          usb\nrobot         servo\ndesign ";
-    fake(evaluate).says(&[subject, "window"]);
+    fake(evaluate).says(&[subject, "window", " N in the trials that insert"]);
     let trial = fake(TRIAL);
     trial.says(&[subject, "inserted"]);
     let rigid = "warning the robot `rigid` does not yield";
@@ -284,6 +284,11 @@ fn bad_usage_is_answered_with_2_and_what_would_be_right() {
         ("--task usb --budget 5 --space x.toml", &["x.toml", "space"]),
         ("resume /nowhere", &["/nowhere", "not a study"]),
         ("reprot x", &["report"]),
+        ("evaluate --task usb --density 20 --angle 10", &["exists: '--direction'"]),
+        ("map --task usb --angel 10", &["exists: '--direction'"]),
+        ("--task usb --densty 20", &["'--density' is an option of `optimize evaluate`"]),
+        ("--task usb --angle 20", &["'--direction' is an option of `optimize evaluate`"]),
+        ("trial --task usb --offset 1", &["exists: '--offset-mm'"]),
     ] {
         optimize_line(line).fails(2, parts);
     }
@@ -385,7 +390,13 @@ fn a_number_of_task_or_finger_can_be_set() {
     fake(&format!("{EVALUATE} --set task.strategy.tilt_deg=0.15")).succeeds();
     let metres = ["--set: task.grip.tcp_z_mm: 0.0406 mm", "multiply by 1000: 40.60 mm"];
     fake(&format!("{EVALUATE} --set task.grip.tcp_z_mm=0.0406")).fails(2, &metres);
-    fake("evaluate --task usb --density 20 --direction 0.35").succeeds();
+    for (direction, noted) in [("0.35", true), ("0.3", false)] {
+        let infill = format!("--task usb --density 20 --direction {direction}");
+        for command in ["evaluate", "trial"] {
+            let found = fake(&format!("{command} {infill}")).succeeds().to_owned();
+            assert_eq!(found.contains("are these radians?"), noted, "{found}");
+        }
+    }
     let fraction = ["between 10 and 30 % in the space", "in fractions, multiply by 100: 20.00 %"];
     fake("evaluate --task usb --density 0.2 --direction 10").fails(2, &fraction);
 }

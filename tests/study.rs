@@ -407,13 +407,36 @@ fn a_task_that_no_design_does_ends_with_what_went_wrong() {
 }
 
 #[test]
-fn the_next_command_names_the_file_of_ones_own_task() {
+fn a_robot_without_whose_stop_the_start_inserts_is_the_verdict() {
+    let studies = Studies::new();
+    let servo = include_str!("../robots/servo.toml");
+    let weak = servo.replace("stop_force_n = 150.0", "stop_force_n = 5.0");
+    let robot = studies.file("weak.toml", weak);
+    let more = "--budget 8 --no-confirm --no-levers --no-map --json --out";
+    let line = format!("--task usb --robot {robot} {more} {}", studies.word("s"));
+    let ran = optimize_line(&line);
+    ran.fails(1, &["no design of the study inserts", "use a robot with higher limits"]);
+    let error = &ran.stderr;
+    let answer: serde_json::Value = serde_json::from_str(&ran.stdout).unwrap();
+    let answer = &answer["answer"];
+    assert_eq!(answer["verdict"], "robot_stops", "{answer}");
+    assert!(answer["headline"].as_str().unwrap().starts_with("Not usable as it is: the robot"));
+    assert!(!error.contains("--start taught") && !error.contains("the plug misses"), "{error}");
+    let page = studies.read("s/report.html");
+    assert!(page.contains("<h1>Not usable as it is: the robot stops in 1 of 1 trials"));
+}
+
+#[test]
+fn the_next_command_names_the_files_of_ones_own_task_and_robot() {
     let studies = Studies::new();
     let text = include_str!("../tasks/usb.toml").replace("name = \"usb\"", "name = \"mine\"");
     let own = studies.file("mine.toml", text);
-    let more = "--engine fake --budget 4 --no-levers --no-map --json --out";
+    let robot =
+        studies.file("robot.toml", format!("# mine\n{}", include_str!("../robots/servo.toml")));
+    let more =
+        format!("--robot {robot} --engine fake --budget 4 --no-levers --no-map --json --out");
     let found = optimize_line(&format!("--task {own} {more} {}", studies.word("s"))).json();
     let next = &found["answer"]["next"]["command"];
-    let options = "--measurements bench.csv --count 3 --engine fake";
+    let options = format!("--measurements bench.csv --count 3 --robot {robot} --engine fake");
     assert_eq!(next, &format!("optimize next --task {own} {options}"));
 }

@@ -1,6 +1,6 @@
 //! A start and a strategy by which a connector inserts, as a user looks for them.
 
-use crate::common::{Studies, optimize};
+use crate::common::{Studies, optimize, optimize_line};
 use connector::tune::{Effort, Stage, Tuner, tune};
 use finger_opt::setup::files::robot;
 use insertion::task::Task;
@@ -62,6 +62,7 @@ fn where_nothing_inserts_it_is_said_with_what_stopped_the_plug() {
     assert_eq!(found["nearest"]["outcome"], "contact loss before insertion");
     assert!(found["nearest"]["phase"].is_string(), "{found}");
     assert_eq!(read_to_string(&own).unwrap(), weak, "a file is written");
+    optimize(&["task", "check", "usb"]).says(&["in this trial peak force "]);
     optimize(&["task", "tune", &own, "--out", &own]).fails(2, &["own.toml exists"]);
     optimize(&["task", "tune", "usb"]).fails(2, &["name the file to write with --out"]);
 }
@@ -113,4 +114,7 @@ fn a_budget_limits_the_search_but_not_the_stages_before_it() {
     let ((_, before, none), (windows, families, searched)) = (tuned("60"), tuned("100"));
     assert_eq!((none, before), (0, families));
     assert!(before > 0 && searched > 0 && windows <= 100, "{searched} in {windows}");
+    let least = "task tune usb --engine fake --dry-run --budget 60";
+    optimize_line(least).says(&["\nsearch        not started"]);
+    optimize_line("task tune -h").says(&["at least 60"]);
 }

@@ -105,7 +105,7 @@ class TunedFinger(Result):
 
 @dataclass(frozen=True, repr=False)
 class Strategy(Result):
-    """Start, tilt, push speed and largest force of a strategy; windows with a soft, a medium and a stiff finger."""
+    """Start, tilt, push speed and peak force of a strategy; windows with a soft, a medium and a stiff finger."""
 
     start_mm: tuple[float, float, float]
     tilt_deg: float

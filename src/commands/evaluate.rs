@@ -86,7 +86,7 @@ impl command::Request for Request {
 
     fn run(&self, context: &Context<'_>) -> Result<Output, Failure> {
         let found = self.evaluated(context)?;
-        Ok(Output::new(found.text(), found))
+        Ok(Output::new(found.text(self.measurements.as_deref()), found))
     }
 }
 
@@ -206,8 +206,9 @@ fn computed<S: Serializer>(by_ribs: &Option<ByRibs>, serializer: S) -> Result<S:
 }
 
 impl Evaluated {
-    /// Returns each measured range, and advice if the simulated one differs from one by more than a factor of two.
-    fn measured_lines(&self) -> Vec<lines::Line> {
+    /// Returns each measured range, or that the file has none, and advice if the simulated one differs from one by more
+    /// than a factor of two.
+    fn measured_lines(&self, file: Option<&str>) -> Vec<lines::Line> {
         let extents = self.measured.iter().filter_map(Experiment::extent);
         let line = |(range_mm, at_least): (f64, bool)| {
             let text = if at_least { "or more, on the bench" } else { "on the bench" };
@@ -222,7 +223,9 @@ impl Evaluated {
                         --measurements correct it by the measured ones";
             ("warning".to_owned(), text.to_owned())
         });
-        extents.map(line).chain(advice).collect()
+        let file = file.filter(|_| self.measured.is_empty());
+        let none = file.map(|file| ("measured".to_owned(), format!("no range of it in {file}")));
+        extents.map(line).chain(none).chain(advice).collect()
     }
 
     /// Returns a remark if no range was measured and those of both finger models differ by more than a factor of two.
@@ -242,7 +245,7 @@ impl Evaluated {
         )
     }
 
-    fn text(&self) -> String {
+    fn text(&self, file: Option<&str>) -> String {
         let Evaluated { chosen, evaluation, .. } = self;
         let [c1, c2, c3, c4] = evaluation.failure_counts;
         let Scenario { task, robot, .. } = &chosen.scenario;
@@ -253,7 +256,7 @@ impl Evaluated {
         let force = force.map(|excess| ("force".to_owned(), excess.words(&robot.name)));
         let mut rest: Vec<_> = force.into_iter().collect();
         rest.push(("range".to_owned(), mm(evaluation.window.range_mm())));
-        rest.extend(self.measured_lines());
+        rest.extend(self.measured_lines(file));
         rest.extend(lines::window(evaluation));
         let failures = format!(
             "{c1} of class 1, {c2} of 2, {c3} of 3, {c4} of 4, {} diverged in {} trials",
@@ -261,8 +264,8 @@ impl Evaluated {
         );
         rest.push(("failures".to_owned(), failures));
         let peak = match evaluation.peak_force_n.is_nan() {
-            true => "none: it is that of the trials that insert".to_owned(),
-            false => number(evaluation.peak_force_n, 1, "N"),
+            true => "none: no trial inserts".to_owned(),
+            false => number(evaluation.peak_force_n, 1, "N in the trials that insert"),
         };
         rest.push(("peak force".to_owned(), peak));
         rest.push(("mating force".to_owned(), words::mating_force(task.largest_mating_force())));

@@ -40,6 +40,7 @@ impl Request {
             measured.file = file;
         }
         setup.task_files.clone_from(&study.config.conclusion.task_files);
+        setup.robot_file.clone_from(&study.config.conclusion.robot_file);
         study.set_provenance(&setup.provenance(), &inputs, self.run.accept_changed)?;
         OpenStudy::new(study, setup, RunRequest { no_confirm, ..self.run.clone() })
     }

@@ -250,8 +250,10 @@ impl ChosenFinger {
         let of_cell = cell.map_or(String::new(), |cell| format!(", of the cell `{}`", cell.name));
         let subject =
             format!("task          {}\nrobot         {}{of_cell}\n", task.name, robot.name);
-        let remarks =
-            cell.and_then(|cell| cell.remark(&task.name)).into_iter().chain(robot.remark());
+        let radians = self.design.get(DIRECTION_KEY).and_then(wrong_unit::direction);
+        let radians = radians.map(|radians| radians.join(" "));
+        let remarks = cell.and_then(|cell| cell.remark(&task.name));
+        let remarks = remarks.into_iter().chain(robot.remark()).chain(radians);
         let remarks: String = remarks.map(|remark| format!("warning       {remark}\n")).collect();
         format!("{subject}{design}{stiffness}{finger}{remarks}")
     }

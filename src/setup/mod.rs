@@ -48,6 +48,8 @@ pub struct Setup {
     pub inputs: Inputs,
     /// Paths of the task files, as given.
     pub task_files: Vec<String>,
+    /// Path of the robot file, as given.
+    pub robot_file: String,
 }
 
 /// Keys of the input files other than tasks in [`Inputs`].
@@ -114,8 +116,17 @@ impl Setup {
             Evaluator { surrogate, fingers: finger_source, templates, robot, engine, cell: None };
         check_compatible(&evaluator, &space, &space_source.file)?;
         let task_files = tasks.iter().map(|task| task.file.clone()).collect();
-        let (uncertainty, measured) = (None, None);
-        Ok(Setup { inputs, evaluator, fingers, uncertainty, measured, space, task_files })
+        let (uncertainty, measured, robot_file) = (None, None, robot_source.file.clone());
+        Ok(Setup {
+            inputs,
+            evaluator,
+            fingers,
+            uncertainty,
+            measured,
+            space,
+            task_files,
+            robot_file,
+        })
     }
 
     /// Returns an evaluator with stiffnesses computed from the ribs of the shipped finger; `None` if the setup does

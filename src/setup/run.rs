@@ -119,9 +119,9 @@ impl RunRequest {
     pub(crate) fn analyses(&self, setup: &Setup, effort: Option<BenchEffort>) -> AnalysisSettings {
         let bench = setup.measured.as_ref().map(|_| self.effort.completed(effort));
         let measurements = setup.measured.as_ref().map(|measured| measured.file.clone());
-        let task_files = setup.task_files.clone();
+        let (task_files, robot_file) = (setup.task_files.clone(), setup.robot_file.clone());
         let (no_confirm, project) = (self.no_confirm, self.project.clone());
-        AnalysisSettings { no_confirm, bench, measurements, task_files, project }
+        AnalysisSettings { no_confirm, bench, measurements, task_files, robot_file, project }
     }
 
     /// Returns the number of threads; 0 for one per processor.

@@ -224,7 +224,7 @@ impl TaskCheck {
                  robot         {}\n\
                  finger        compliance {} N/mm, assembly {} N/mm: the medium one of the measured fingers\n\
                  mating force  {}\n\
-                 nominal       {}, peak force {:.1} N, slip {:.2} mm\n              {explanation}\n",
+                 nominal       {}, in this trial peak force {:.1} N, slip {:.2} mm\n              {explanation}\n",
                 self.with.name,
                 finger.compliance / N_PER_MM,
                 finger.assembly / N_PER_MM,

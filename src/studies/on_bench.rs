@@ -6,7 +6,7 @@ use crate::{Context, Failure, RunRequest, Setup};
 use calibration::bench::Settings;
 use calibration::calibrate::Calibration;
 use calibration::simulation::Simulation;
-use calibration::table::{self, bench_prediction, by_range};
+use calibration::table::{self, bench_prediction, best_fingers};
 use insertion::{Measure, Objectives};
 use rayon::ThreadPool;
 use study::{BENCH_FILE, Study, StudyConfig, write_analysis, write_own_file};
@@ -55,7 +55,7 @@ pub(crate) fn predict(
         let nothing = || Failure::running("the space has no finger to predict");
         let task = subjects.first().zip(calibration.tasks.first());
         let (subject, result) = task.ok_or_else(nothing)?;
-        let best = by_range(subject, result).first().copied().ok_or_else(nothing)?;
+        let best = best_fingers(subject, result).first().copied().ok_or_else(nothing)?;
         let (task, cache) = (setup.only_task()?, known.cache.clone());
         let simulation = Simulation::new(&setup.evaluator, task, [].iter(), cache, context.stop);
         let simulated = simulation.window(&best.design, &[])?;

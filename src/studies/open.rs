@@ -17,8 +17,8 @@ use rayon::ThreadPool;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use study::{
-    Cache, CachedEvaluator, ConfirmationLog, ConfirmationStep, Confirmer, Ending, Recorded, Runner,
-    Study, StudyError, StudyRecord,
+    Cache, CachedEvaluator, ConfirmationLog, ConfirmationStep, Confirmer, Ending, ROBOT_STOP_FILE,
+    Recorded, Runner, Study, StudyError, StudyRecord, write_analysis,
 };
 
 /// Open study, locked against other processes.
@@ -143,7 +143,12 @@ impl OpenStudy {
             // After cancellation the report is still written.
             predicted.or_else(|failure| if interrupted() { Ok(()) } else { Err(failure) })?;
         }
-        let (dir, record) = (study.dir().to_owned(), study.record());
+        let (dir, mut record) = (study.dir().to_owned(), study.record());
+        // An error is that of `unusable::check`, too.
+        record.robot_stop = unusable::robot_stop(&record, setup, stop).unwrap_or_default();
+        if record.robot_stop.is_some() {
+            write_analysis(&dir, ROBOT_STOP_FILE, &record.robot_stop)?;
+        }
         let answer = Answer::of(&record);
         if !interrupted() {
             film::boundary(&dir, &answer, setup, pool, stop)?;

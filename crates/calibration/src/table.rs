@@ -188,18 +188,26 @@ pub fn parameters_csv(calibration: &Calibration) -> String {
     head.to_owned() + &lines.collect::<String>()
 }
 
-/// Number of fingers that a study stores, those with the largest predicted ranges.
-const BEST_FINGERS: usize = 5;
+/// Number of fingers with the largest predicted ranges that are listed.
+const LISTED: usize = 5;
 
-/// Returns the fingers of the space by their predicted ranges, best first, without those that were printed and inserted
-/// from no start.
-pub fn by_range<'a>(subject: &Subject, result: &'a TaskResult) -> Vec<&'a Prediction> {
+/// Returns the fingers of the space with the largest predicted ranges and the one most probably the best, in the order
+/// of their ranges, without those that were printed and inserted from no start.
+pub fn best_fingers<'a>(subject: &Subject, result: &'a TaskResult) -> Vec<&'a Prediction> {
     let failed = subject.not_measurable();
     let inserts = |(finger, _): &(usize, &Prediction)| !failed.contains(finger);
     let all = result.predictions.iter().enumerate().filter(inserts);
     let mut order: Vec<&Prediction> = all.map(|(_, one)| one).collect();
     order.sort_by(|a, b| b.range_mm.total_cmp(&a.range_mm));
-    order
+    listed(&order)
+}
+
+/// Returns the first of the ranked fingers and the one most probably the best, in their order.
+fn listed<'a>(ranked: &[&'a Prediction]) -> Vec<&'a Prediction> {
+    let probability = |i: &usize| ranked[*i].probability_best;
+    let places = 0..ranked.len();
+    let likeliest = places.clone().rev().max_by(|a, b| probability(a).total_cmp(&probability(b)));
+    places.filter(|i| *i < LISTED || Some(*i) == likeliest).map(|i| ranked[i]).collect()
 }
 
 /// Returns the bench prediction for a study of one task; `simulated` is the evaluation of the best finger.
@@ -235,7 +243,40 @@ pub fn bench_prediction(
         fingers: result.predictions.len(),
         trust: result.accuracy(subject.emulator.error_mm),
         warnings: doubt.into_iter().chain(warning(subject)).collect(),
-        best: by_range(subject, result).iter().take(BEST_FINGERS).map(finger).collect(),
+        best: best_fingers(subject, result).iter().map(finger).collect(),
         simulated,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_list_contains_the_finger_that_is_most_probably_the_best() {
+        let prediction = |(place, probability_best): (usize, f64)| {
+            let range_mm = 9.0 - place as f64;
+            let (low_mm, high_mm, simulated_mm) = (0.0, 9.0, range_mm);
+            let (design, failure_negative, failure_positive) = (Design::default(), None, None);
+            Prediction {
+                design,
+                range_mm,
+                low_mm,
+                high_mm,
+                probability_best,
+                simulated_mm,
+                failure_negative,
+                failure_positive,
+            }
+        };
+        let ranges = |probabilities: [f64; 8]| {
+            let all: Vec<_> = probabilities.into_iter().enumerate().map(prediction).collect();
+            let listed = listed(&all.iter().collect::<Vec<_>>());
+            listed.iter().map(|one| one.range_mm).collect::<Vec<_>>()
+        };
+        let first = [9.0, 8.0, 7.0, 6.0, 5.0];
+        assert_eq!(ranges([0.0, 0.0, 0.3, 0.0, 0.0, 0.0, 0.3, 0.0]), first);
+        let with = [first.as_slice(), &[3.0]].concat();
+        assert_eq!(ranges([0.0, 0.0, 0.2, 0.0, 0.0, 0.0, 0.3, 0.0]), with);
     }
 }

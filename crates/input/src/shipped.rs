@@ -102,8 +102,8 @@ impl Source {
 /// extension), the file at that path.
 ///
 /// # Errors
-/// If there is no such file or it cannot be read; the message about an unknown name lists the names that begin with it,
-/// else the nearest one, and all names.
+/// If there is no such file or it cannot be read; the message about an unknown name lists the names that begin with it
+/// and a file of that name, else the nearest name, and all names.
 pub fn resolve(kind: &str, shipped: &[Shipped], name: &str) -> Result<Source, RequestError> {
     if let Some(found) = shipped.iter().find(|shipped| shipped.name == name) {
         return Ok(Source { file: found.file.to_owned(), text: found.text.to_owned() });
@@ -114,6 +114,9 @@ pub fn resolve(kind: &str, shipped: &[Shipped], name: &str) -> Result<Source, Re
     let names: Vec<&'static str> = shipped.iter().map(|shipped| shipped.name).collect();
     let begins = |other: &&str| !name.is_empty() && other.starts_with(name);
     let mut near: Vec<&str> = names.iter().copied().filter(begins).collect();
+    let extension = shipped.first().and_then(|known| known.file.split('.').next_back());
+    let file = format!("{name}.{}", extension.unwrap_or_default());
+    near.extend(Some(&*file).filter(|file| !name.is_empty() && Path::new(file).is_file()));
     if near.is_empty() {
         near.extend(nearest(name, &names));
     }
@@ -151,5 +154,7 @@ mod tests {
         assert_eq!(error("ur5"), text);
         assert!(error("rigit").contains("(did you mean `rigid`?)"));
         assert!(error("").contains("robot ``\navailable"));
+        // A file of the folder of this crate.
+        assert!(error("Cargo").contains("(did you mean `Cargo.toml`?)"));
     }
 }

@@ -45,6 +45,11 @@ pub fn other(unit: &str, value: f64, [low, high]: [f64; 2]) -> Option<String> {
     ))
 }
 
+/// Checks that an infill direction, degrees, is not in radians.
+pub fn direction(degrees: f64) -> Option<WrongUnit> {
+    angle(degrees, [0.0, 90.0], 0.1)
+}
+
 /// Checks that an angle, degrees, is not in radians: that it is a multiple of `step`, or that its magnitude would in
 /// radians be beyond the plausible range, degrees.
 pub fn angle(degrees: f64, [low, high]: [f64; 2], step: f64) -> Option<WrongUnit> {

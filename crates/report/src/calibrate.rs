@@ -5,10 +5,7 @@ use crate::answer::words::{design, others};
 use calibration::calibrate::{Calibration, Coordinate, TaskResult};
 use calibration::predict::INTERVAL;
 use calibration::subject::Subject;
-use calibration::table::{ParameterUpdate, by_range, confounded, updates, warning};
-
-/// Number of fingers in the table.
-const LISTED: usize = 5;
+use calibration::table::{ParameterUpdate, best_fingers, confounded, updates, warning};
 
 /// Returns the result for a task as text within 80 columns.
 pub fn text(subject: &Subject, result: &TaskResult) -> String {
@@ -28,7 +25,7 @@ pub fn text(subject: &Subject, result: &TaskResult) -> String {
             100.0 * INTERVAL
         );
     }
-    let best = || by_range(subject, result).into_iter().take(LISTED);
+    let best = || best_fingers(subject, result).into_iter();
     let rows = best().map(|one| {
         [
             design(&one.design),

@@ -50,7 +50,7 @@
       list("ends", e.window && `${e.ends[0]} below, ${e.ends[1]} above`);
       list("confirmed, firm", data.confirmed[e.index] !== undefined && `${number(data.confirmed[e.index])} mm`);
       list("on a robot", data.robot[e.index] !== undefined && `${number(data.robot[e.index])} mm`);
-      list("largest force", e.force !== null && `${number(e.force)} N`);
+      list("peak force", e.force !== null && `${number(e.force)} N`);
       list("stiffness across", `${number(e.stiffness, 2)} N/mm`);
       const buttons = part("p", { class: "files" }, card);
       if (e.index === data.best && at("film0")) part("button", { type: "button" }, buttons, "Play its replay").addEventListener("click", () => { at("film").scrollIntoView({ block: "center" }); play(0); });

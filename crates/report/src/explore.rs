@@ -148,7 +148,7 @@ fn bound(found: &Recorded) -> Option<String> {
 }
 
 /// Returns an evaluation as a list, which is shorter than an object: index, parameters, value, whether it is feasible
-/// (1 or 0), both ends (mm), the outcomes there (as indices of `outcomes`), largest force (N) and stiffness along y
+/// (1 or 0), both ends (mm), the outcomes there (as indices of `outcomes`), peak force (N) and stiffness along y
 /// (N/mm).
 fn row(record: &StudyRecord, found: &Recorded, outcomes: &mut Vec<String>) -> Value {
     let parameters = record.config.space.parameters.iter();

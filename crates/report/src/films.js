@@ -15,6 +15,7 @@ var play = (() => {
     frame.srcdoc = viewer.replace("<body>", '<body class="compact">').replace('id="films">', () => `id="films">${at(`film${k}`).textContent}`);
   };
   const play = (k) => {
+    if (frame.dataset.state === "picture") return;
     if (k !== shown) { wanted = true; show(k); return; }
     if (frame.dataset.state) frame.contentWindow.postMessage("play", "*"); else wanted = true;
   };
@@ -22,7 +23,8 @@ var play = (() => {
     if (source !== frame.contentWindow) return;
     frame.dataset.state = String(data);
     // Without WebGL the picture of the failed trial stays.
-    if (data !== "picture") at("caption").textContent = buttons[shown].dataset.caption;
+    if (data === "picture") { at("caption").append(" The films need WebGL, which this browser lacks."); return; }
+    at("caption").textContent = buttons[shown].dataset.caption;
     buttons.forEach((button, k) => button.setAttribute("aria-pressed", String(k === shown && data === "playing")));
     if (data !== "playing" && data !== "paused" && wanted) { wanted = false; frame.contentWindow.postMessage("play", "*"); }
   });

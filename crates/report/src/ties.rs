@@ -41,7 +41,7 @@ pub(super) fn section(answer: &Answer) -> Option<Markup> {
         cells.extend(any_measured.then(|| on_robot(recorded).map_or(String::new(), mm)));
         cells
     };
-    let head = ["finger", "reason to choose it", "expected loss", "largest force", COMPLIANCE];
+    let head = ["finger", "reason to choose it", "expected loss", "peak force", COMPLIANCE];
     let head: Vec<&str> = head.into_iter().chain(any_measured.then_some("measured")).collect();
     Some(html! {
         p { (lines::tied(answer, found).1) "." }

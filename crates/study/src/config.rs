@@ -106,6 +106,9 @@ pub struct AnalysisSettings {
     /// Paths of the task files, as given, in the order of the tasks.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub task_files: Vec<String>,
+    /// Path of the robot file, as given.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub robot_file: String,
     /// Project file and the options set by it, as text, if there is one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub project: Option<String>,

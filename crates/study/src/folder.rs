@@ -8,6 +8,7 @@
 //! replay/          animations of the trials at both ends of the recommended window
 //! walk.json        confirmation of the best designs
 //! bench.json       prediction for the bench (the real robot) from measurements
+//! robot_stop.json  evaluation that would insert without robot stop, if no design inserts
 //! evaluations.csv  evaluations as a table; convergence.svg and report.html beside it
 //! .lock            lock of the writing process
 //! ```
@@ -222,6 +223,9 @@ impl Study {
     }
 }
 
+/// File with [`StudyRecord::robot_stop`] in the folder of a study.
+pub const ROBOT_STOP_FILE: &str = "robot_stop.json";
+
 impl StudyRecord {
     /// Reads the study in `dir`, which may be running, without writing to it.
     ///
@@ -260,6 +264,7 @@ impl StudyRecord {
             limits,
             firm_values,
             on_bench,
+            robot_stop: read_analysis(dir, ROBOT_STOP_FILE),
             settled,
             confirmation_due,
         }

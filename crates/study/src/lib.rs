@@ -35,7 +35,9 @@ pub use config::{
 };
 pub use confirmer::{ConfirmationLog, ConfirmationStep, Confirmer};
 pub use error::StudyError;
-pub use folder::{CELL, FINGER, Inputs, Study, has_begun, input_path, read_analysis, read_config};
+pub use folder::{
+    CELL, FINGER, Inputs, ROBOT_STOP_FILE, Study, has_begun, input_path, read_analysis, read_config,
+};
 pub use folder::{sha256, write_analysis, write_file, write_own_file};
 pub use limits::ForceLimits;
 pub use line::{decode, encode};

@@ -31,7 +31,7 @@ pub struct BenchPrediction {
     pub trust: LeaveOneOut,
     /// Warnings, one line each.
     pub warnings: Vec<String>,
-    /// The fingers of largest predicted range, best first; at least one.
+    /// The fingers of largest predicted range and the one most probably the best, by range; at least one.
     pub best: Vec<BenchFinger>,
     /// Simulated evaluation of the first of them with the nominal parameters of the task file.
     pub simulated: Evaluation,

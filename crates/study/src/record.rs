@@ -40,6 +40,9 @@ pub struct StudyRecord {
     pub firm_values: BTreeMap<u64, f64>,
     /// Bench prediction, if there are measurements.
     pub on_bench: Option<BenchPrediction>,
+    /// Index of the evaluation that is nearest to an insertion, if no design inserts, but this one would without
+    /// robot stop.
+    pub robot_stop: Option<u64>,
     /// Whether the search has settled: no design was expected to improve on the best.
     pub settled: bool,
     /// Whether the best designs are to be confirmed and the confirmation is not complete.

@@ -36,14 +36,14 @@ pub struct Request {
     /// Robot and contact engine.
     #[command(flatten)]
     pub robot: RobotRequest,
-    /// Largest number of windows to measure; start, shipped strategies and final checks are not shortened
+    /// Largest number of windows to measure, at least 60; start, shipped strategies and final checks are not shortened
     #[arg(long, value_name = "N", default_value_t = DEFAULT_BUDGET,
           value_parser = clap::value_parser!(u16).range(60..=10_000))]
     pub budget: u16,
     /// Seed of the search
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub seed: u64,
-    /// Largest force between plug and socket, N [default: limits.force_n of the task, or the robot's stop force]
+    /// Largest peak force in the trials that insert, N [default: limits.force_n of the task, or the robot's stop force]
     #[arg(long, value_name = "N", value_parser = positive)]
     pub max_force_n: Option<f64>,
     /// Largest speed of a phase, mm/s [default: limits.speed_mm_per_s of the task]
@@ -333,7 +333,7 @@ fn text(done: &TunedTask<'_>) -> String {
     lines(all)
 }
 
-/// Returns speed and largest force of the push, before and after tuning, as text.
+/// Returns speed and peak force of the push, before and after tuning, as text.
 fn push_text(TunedTask { tuner, tuned, .. }: &TunedTask<'_>, after_n: f64) -> String {
     let Tuner { task, robot, limits, .. } = tuner;
     let [old, new] = [&task.strategy, &tuned.best().tried.strategy].map(push_speed_mm_per_s);
@@ -347,7 +347,8 @@ fn push_text(TunedTask { tuner, tuned, .. }: &TunedTask<'_>, after_n: f64) -> St
     let above = format!("; a study accepts at most {accepted_n:.1} N (--max-force-n)");
     let above = if after_n > accepted_n { above } else { String::new() };
     format!(
-        "{old:.0} -> {new:.0} mm/s{limited}, largest force {before} -> {after_n:.0} N{limit}{above}"
+        "{old:.0} -> {new:.0} mm/s{limited}, peak force {before} -> {after_n:.0} N{limit} \
+         in the trials that insert{above}"
     )
 }
 
@@ -356,13 +357,17 @@ fn steps(tuned: &Tuned) -> Vec<(String, String)> {
     let (searched, others): (Vec<&Step>, Vec<&Step>) =
         tuned.steps.iter().partition(|step| step.stage == Stage::Search);
     let best = searched.into_iter().max_by(|a, b| a.tried.score.total_cmp(&b.tried.score));
+    let none = best.is_none().then(|| {
+        let text = "not started: --budget leaves no windows for it";
+        (NAMES[Stage::Search as usize].to_owned(), text.to_owned())
+    });
     let mut seen = None;
     let line = |step: &Step| {
         let repeated = step.stage == Stage::Families && seen.replace(step.stage).is_some();
         let name = if repeated { "" } else { NAMES[step.stage as usize] };
         (name.to_owned(), format!("{}: {}", step.change, outcome(step)))
     };
-    others.into_iter().chain(best).map(line).collect()
+    others.into_iter().chain(best).map(line).chain(none).collect()
 }
 
 /// Names of the stages.

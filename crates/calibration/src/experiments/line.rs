@@ -170,8 +170,8 @@ fn density(text: &str) -> Result<f64, String> {
 /// Parses an infill direction, degrees.
 fn direction(text: &str) -> Result<f64, String> {
     let degrees = number(text)?;
-    let radians = wrong_unit::angle(degrees, [0.0, 90.0], 0.1);
-    let radians = radians.map(|radians| radians.join(" ") + ", or round to 0.1 degrees");
+    let radians = wrong_unit::direction(degrees)
+        .map(|radians| radians.join(" ") + ", or round to 0.1 degrees");
     radians.or_else(|| numbers::problem(DIRECTION_KEY, degrees)).map_or(Ok(degrees), Err)
 }
 

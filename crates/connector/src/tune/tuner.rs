@@ -32,7 +32,7 @@ pub struct Tuner<'a> {
     pub fingers: [Finger; 3],
     /// Three fingers between these, for checks of the recommended strategy.
     pub others: [Finger; 3],
-    /// Largest force between plug and socket, N, and largest speed of a phase, m/s, of a recommended strategy.
+    /// Largest peak force, N, and largest speed of a phase, m/s, of a recommended strategy.
     pub limits: Limits,
     /// Stop flag; once it is set, results are invalid.
     pub stop: &'a AtomicBool,

@@ -49,6 +49,15 @@ impl InputArguments<'_> {
         shipped.or_else(own).unwrap_or_else(|| self.input("measurements", MEASUREMENTS))
     }
 
+    /// Returns the options of [`Self::changed_setup`] with the user's own robot file in place of its copy.
+    fn own_setup(&self) -> Vec<String> {
+        let own = &self.record.config.conclusion.robot_file;
+        let copy = self.input("robot", ROBOTS);
+        let is_own = own.ends_with(".toml") && self.shipped("robot", ROBOTS).is_none();
+        let own = if is_own { shell_word(own) } else { copy.clone() };
+        self.changed_setup().into_iter().map(|word| word.replace(&copy, &own)).collect()
+    }
+
     /// Returns the options from the space to the engine that are not the defaults.
     fn changed_setup(&self) -> Vec<String> {
         setup(self).into_iter().filter(|word| !DEFAULTS.contains(&word.as_str())).collect()
@@ -81,7 +90,7 @@ pub fn next(answer: &Answer, dir: &Path) -> (String, &'static str) {
             ("optimize measure add bench.csv".to_owned(), "enter the measurements of your robot")
         }
         (verdict, trust) => {
-            let mut setup = inputs.changed_setup();
+            let mut setup = inputs.own_setup();
             let file = match trust {
                 Trust::Calibrated { .. } => inputs.measurements(),
                 Trust::Published { .. } => MEASUREMENTS[0].name.to_owned(),
@@ -120,7 +129,7 @@ fn evaluate(answer: &Answer, inputs: &InputArguments) -> Option<String> {
 /// changes a user's own file, but writes a new one for a task given as text.
 pub fn repair(record: &StudyRecord, dir: &Path, place: usize) -> (String, &'static str) {
     let (inputs, role) = (InputArguments { record, dir }, format!("task_{}", place + 1));
-    let robot = inputs.changed_setup().into_iter().find(|word| word.starts_with("--robot "));
+    let robot = inputs.own_setup().into_iter().find(|word| word.starts_with("--robot "));
     let robot = robot.map_or(String::new(), |robot| format!(" {robot}"));
     if let Some(shipped) = inputs.shipped(&role, TASKS) {
         return (format!("optimize task check {shipped}{robot}"), "find out why nothing inserts");

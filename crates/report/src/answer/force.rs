@@ -42,8 +42,8 @@ impl ExcessForce {
         Some(ExcessForce { task, peak_force_n, limit_n, of_connector })
     }
 
-    /// Returns the force and the limit in words: `up to 149 N on ket8: more than 90 % of the
-    /// 150 N at which the robot ur5e stops`.
+    /// Returns the force and the limit in words: `up to 149 N on ket8 in the trials that insert: more
+    /// than 90 % of the 150 N at which the robot ur5e stops`.
     pub fn words(&self, robot: &str) -> String {
         let ExcessForce { task, peak_force_n, limit_n, of_connector } = self;
         let stop = format!("the {limit_n:.0} N at which the robot {robot} stops");
@@ -52,7 +52,7 @@ impl ExcessForce {
             (false, true) => format!("above {stop}"),
             (false, false) => format!("more than {:.0} % of {stop}", 100.0 * STOP_SHARE),
         };
-        format!("up to {peak_force_n:.0} N on {task}: {limit}")
+        format!("up to {peak_force_n:.0} N on {task} in the trials that insert: {limit}")
     }
 }
 
@@ -66,7 +66,7 @@ mod tests {
             let task = "usb".to_owned();
             ExcessForce { task, peak_force_n, limit_n: 150.0, of_connector: false }.words("servo")
         };
-        assert!(words(149.0).contains("149 N on usb: more than 90 % of the 150 N at which"));
-        assert!(words(155.4).contains("155 N on usb: above the 150 N at which the robot servo"));
+        assert!(words(149.0).contains("149 N on usb in the trials that insert: more than 90 %"));
+        assert!(words(155.4).contains("above the 150 N at which the robot servo stops"));
     }
 }

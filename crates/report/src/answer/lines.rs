@@ -281,7 +281,7 @@ pub fn recommended(answer: &Answer, found: &Recommended) -> Vec<Line> {
         }));
         lines.extend(Measure::PeakForce.value(task.measured).map(|peak_n| {
             let peak = Measure::PeakForce.show(peak_n);
-            line("peak force", format!("{peak} between plug and socket in the trials that insert"))
+            line("peak force", format!("{peak} in the trials that insert"))
         }));
     }
     if let Some(ribs) = found.by_ribs {

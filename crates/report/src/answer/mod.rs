@@ -142,6 +142,10 @@ impl<'a> Answer<'a> {
     /// Returns the index of the first task on which the robot stops in most insertions of the finger to print, and the
     /// evaluation on it; `None` if there is none.
     pub fn stopped(&self) -> Option<(usize, &'a Evaluation)> {
+        if let Verdict::NothingInserts { place, nearest, fails, .. } = self.verdict {
+            let by_robot = self.record.robot_stop == Some(nearest.index);
+            return fails.filter(|_| by_robot).map(|found| (place, found));
+        }
         let (_, tasks) = self.finger_and_evaluations()?;
         tasks.into_iter().enumerate().find(|(_, found)| found.mostly_stopped())
     }
@@ -170,7 +174,8 @@ impl<'a> Answer<'a> {
                 )
             }
         };
-        Some(format!("{why}; best finger: {}", words::design(self.verdict.finger()?)))
+        let finger = self.verdict.finger().map(words::design);
+        Some(why + &finger.map_or(String::new(), |finger| format!("; best finger: {finger}")))
     }
 
     /// Returns the headline of a finger that no measurement supports: of its task there are none, or a range is optimized,

@@ -24,20 +24,8 @@ pub(crate) const TERMS: [(&str, &str); 12] = [
         "Ties",
         "designs whose firm range, measured or expected, is smaller by at most --indifference-mm",
     ),
-<<<<<<< HEAD
-    (
-        "peak force",
-        "largest contact force between plug and socket over the inserted trials of the window",
-    ),
-    ("robust range", "range under sampled errors: mean minus one standard deviation"),
-=======
     ("peak force", "largest contact force between plug and socket in the trials that insert"),
-    (
-        "robust range",
-        "range under sampled errors: mean minus one standard deviation, or the mean of the lower \
-         tail",
-    ),
->>>>>>> ff16cabcd9e335781c6b7b7a3c586295da147af8
+    ("robust range", "range under sampled errors: mean minus one standard deviation"),
 ];
 
 /// Returns a text as HTML, with an explanation of each term.

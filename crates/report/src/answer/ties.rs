@@ -238,7 +238,7 @@ mod tests {
         assert_eq!(named(&record), (9, Some(4), false));
         let (_, text) = lines::left_out(&Answer::of(&record)).unwrap();
         assert!(
-            text.contains("6°, 6.7 mm: up to 10 N on usb: its connector withstands 9 N"),
+            text.contains("6°, 6.7 mm: up to 10 N on usb in the trials that insert: its connector withstands 9 N"),
             "{text}"
         );
         // No tied finger is gentle enough.

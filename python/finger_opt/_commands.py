@@ -892,11 +892,11 @@ def tune_task(
         task: Task file, which is rewritten; or the name of a shipped task, with out.
         robot: see `optimize robots`, or the path of a robot file.
         engine: Contact engine.
-        budget: Largest number of windows to measure; start, shipped strategies and final checks are not
-            shortened.
+        budget: Largest number of windows to measure, at least 60; start, shipped strategies and final
+            checks are not shortened.
         seed: Seed of the search.
-        max_force_n: Largest force between plug and socket, N [default: limits.force_n of the task, or the
-            robot's stop force].
+        max_force_n: Largest peak force in the trials that insert, N [default: limits.force_n of the task,
+            or the robot's stop force].
         max_speed_mm_per_s: Largest speed of a phase, mm/s [default: limits.speed_mm_per_s of the task].
         out: Write this new file instead of FILE.
         dry_run: Write no task file.

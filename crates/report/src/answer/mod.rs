@@ -194,6 +194,9 @@ impl<'a> Answer<'a> {
             (Verdict::Print(_), Some(of)) => {
                 format!("{of} fingers differ by less than the simulation error")
             }
+            (Verdict::Print(_), _) if self.left_out.is_some() => {
+                "Best in simulation within the limit of force".to_owned()
+            }
             (Verdict::Print(_) | Verdict::Choose { of: 1, .. }, _) => {
                 "Best in simulation".to_owned()
             }

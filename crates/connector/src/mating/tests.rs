@@ -246,6 +246,34 @@ fn a_tongue_in_a_shell_is_no_wall_outside_of_it() {
     }
 }
 
+/// The springs overlap the card by most of its thickness, the cover is thinner than they are wide, and walls would face
+/// the card below the bar that stops it.
+#[test]
+fn a_card_rests_on_a_bar_behind_springs_below_a_thin_cover() {
+    let plug =
+        [block([0.0, 0.65], [10.0, 1.2], [0.0, 5.5]), block([0.0, 0.65], [12.0, 1.2], [5.5, 15.0])];
+    let mut socket = [
+        block([0.0, -0.3], [12.0, 0.6], [-0.5, 5.0]),
+        block([0.0, 1.4], [12.0, 0.2], [-0.5, 5.0]),
+        block([-5.525, 0.65], [0.95, 1.3], [-0.5, 5.0]),
+        block([5.525, 0.65], [0.95, 1.3], [-0.5, 5.0]),
+        block([0.0, 0.65], [9.0, 0.8], [-0.5, 0.0]),
+        // Legs: the bar is far above the lowest point.
+        block([-5.5, -0.4], [0.8, 0.4], [-9.0, -0.5]),
+        block([5.5, -0.4], [0.8, 0.4], [-9.0, -0.5]),
+    ]
+    .concat();
+    for x in [-4.0, -2.5, -1.0, 1.0, 2.5, 4.0] {
+        socket.extend(block([x, 0.45], [0.4, 0.9], [1.5, 2.5]));
+    }
+    for number in [5, 12] {
+        let (mate, _) = found(&plug.concat(), &socket, number);
+        close(&mate, [0.0, 0.65, 0.0], [0.1, 0.1]);
+        assert!((mate.depth_m() - 5.0 * MM).abs() < CLOSE, "{mate:?}");
+        assert_eq!(mate.missed_m, 0.0, "{mate:?}");
+    }
+}
+
 /// A press fit has no walls that could be springs.
 #[test]
 fn a_press_fit_has_little_play() {

@@ -158,7 +158,7 @@ pub fn overlap(maps: [&HeightMap; 2], shift: [i32; 2], z: f32) -> Vec<[i32; 2]> 
 
 /// Returns each cell of the plug with the height at which this cell would rest on the socket, m; arguments as for
 /// [`overlap`].
-fn rests(maps: [&HeightMap; 2], shift: [i32; 2]) -> impl Iterator<Item = ([i32; 2], f32)> {
+pub fn rests(maps: [&HeightMap; 2], shift: [i32; 2]) -> impl Iterator<Item = ([i32; 2], f32)> {
     let [socket, plug] = maps;
     plug.cells().map(move |[x, y]| ([x, y], socket.at(x + shift[0], y + shift[1]) - plug.at(x, y)))
 }

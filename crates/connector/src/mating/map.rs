@@ -1,5 +1,6 @@
 //! Height maps.
 
+use super::cells::CellSet;
 use crate::body::extent;
 use crate::mesh::Triangle;
 use rayon::prelude::*;
@@ -140,6 +141,14 @@ impl HeightMap {
         } else {
             self.envelope.empty()
         }
+    }
+
+    /// Returns the map without material in some cells.
+    pub fn without(&self, cells: &CellSet) -> HeightMap {
+        let height = |(cell, z): ([i32; 2], &f32)| {
+            if cells.contains(cell) { self.envelope.empty() } else { *z }
+        };
+        HeightMap { heights: self.cells().zip(&self.heights).map(height).collect(), ..*self }
     }
 
     /// Returns the map eroded by a radius: the innermost height within it of each cell.

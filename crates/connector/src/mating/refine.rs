@@ -1,7 +1,7 @@
 //! Refinement of coarse seats: shift, height, interference and engagement.
 
 use super::cells::CellSet;
-use super::engagement::{PlugWalls, SIDES, SocketWalls, overlap, score};
+use super::engagement::{PlugWalls, SIDES, SocketWalls, overlap, rests, score};
 use super::map::{Envelope, HeightMap, NOWHERE, Window, bounds, rest, touching};
 use super::search::{CoarseSeat, FINE, Scene};
 use super::select::SIMILAR;
@@ -267,14 +267,13 @@ impl Fine {
     /// Returns the pose with its depth and the length of its nose.
     fn with_depth(&self, pose: Pose) -> Pose {
         let shift = self.cells(&pose);
-        let overlap = self.interference(&pose);
-        let side = ((self.max_play + 2.0 * overlap) / self.step).ceil() as i32;
-        let free = (overlap / self.step).ceil() as usize;
-        let (s, p) = (self.upper.eroded(free / 2), self.tight.eroded(free - free / 2));
-        let (height, at) = freed(&s, &p, shift, side);
+        let overlap = CellSet::new(&self.overlap(&pose));
+        let side = ((self.max_play + 2.0 * self.width(&overlap)) / self.step).ceil() as i32;
+        let (s, p) = (&self.upper, self.tight.without(&overlap));
+        let (height, at) = freed(s, &p, shift, side);
         let depth = (f64::from(height) - pose.z).max(0.0);
         // By the edge of the socket: within the tolerance, a chamfer of the tip touches it at several heights.
-        let met = touching([&s, &p], at, height - LEVEL);
+        let met = touching([s, &p], at, height - LEVEL);
         let edge = met.map(|[x, y]| s.at(x + at[0], y + at[1])).fold(-NOWHERE, f32::max);
         let nose = f64::from(edge - height) - self.heights[1][0];
         let nose = if depth > 0.0 { nose.max(0.0) } else { 0.0 };
@@ -339,12 +338,13 @@ impl Fine {
         overlap([&self.upper, &self.tight], self.cells(pose), pose.z as f32 + LEVEL)
     }
 
-    /// Returns the least further depth at which most walls would face one another if nothing stopped the plug, m: 0 if
-    /// it is at most [`SEATED`] or those at its seat are [`SIMILAR`], as they are unless a key or a screw is in the way.
+    /// Returns the least further depth at which most walls would face one another if nothing stopped the plug above the
+    /// floor, m: 0 if it is at most [`SEATED`] or those at its seat are [`SIMILAR`], as they are unless a key or a screw is
+    /// in the way.
     pub fn missed(&self, pose: &Pose) -> f64 {
         let (faces, at) = (self.faces(), self.cells(pose));
         let walls = |by: f64| score(&self.sides.facing(&faces, at, (pose.z - by) as f32 + LEVEL));
-        let most = pose.z + self.heights[1][1] - self.heights[0][0];
+        let most = pose.z - self.floor(pose) + f64::from(LEVEL);
         let lower = (1..).map(|i| f64::from(i) * DROP).take_while(|by| *by < most);
         let areas: Vec<(f64, f64)> = lower.map(|by| (walls(by), by)).collect();
         let most = areas.iter().fold(0.0, |most, (area, _)| area.max(most));
@@ -354,9 +354,25 @@ impl Fine {
         first.filter(missed).map_or(0.0, |(_, by)| by)
     }
 
+    /// Returns the height of the plug at which half of its engaged tip meets the socket or, without a floor, all of the
+    /// plug has passed the socket, m.
+    fn floor(&self, pose: &Pose) -> f64 {
+        let [socket, plug] = self.heights;
+        let end = (plug[0] + pose.nose + pose.depth) as f32;
+        let tip = |([x, y], _): &([i32; 2], f32)| self.tight.at(*x, *y) < end;
+        let rests = rests([&self.upper, &self.tight], self.cells(pose)).filter(tip);
+        let mut heights: Vec<f32> = rests.map(|(_, height)| height).collect();
+        heights.sort_by(f32::total_cmp);
+        let middle = heights.get(heights.len() / 2).copied().unwrap_or(-NOWHERE);
+        f64::from(middle).max(socket[0] - plug[1])
+    }
+
     /// Returns the width of the region that both parts fill at a pose, m.
     pub fn interference(&self, pose: &Pose) -> f64 {
-        let cells = CellSet::new(&self.overlap(pose));
+        self.width(&CellSet::new(&self.overlap(pose)))
+    }
+
+    fn width(&self, cells: &CellSet) -> f64 {
         let width = if cells.is_empty() { 0.0 } else { TOLERANCE };
         (0..cells.depth()).fold(width, |width, _| width + 2.0 * self.step)
     }

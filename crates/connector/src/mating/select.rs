@@ -4,12 +4,12 @@ use super::frame::Parts;
 use super::map::{NOWHERE, bounds};
 use super::refine::Pose;
 use super::search::{MIN_DEPTH, Scene};
-use super::{MatingResult, precise};
+use super::{Mate, MatingResult, precise};
 use input::units::MM;
 
 /// Smallest share of the best engagement that counts as similar, given the resolution of the maps.
 pub const SIMILAR: f64 = 0.97;
-/// Largest difference in depth between equal mates, m.
+/// Largest distance and largest difference in depth between equal mates, m.
 const DEPTH_TOLERANCE: f64 = 0.05 * MM;
 /// Smallest facing area, as a share of [`MIN_DEPTH`] times the mean side of the plug in x and y.
 const GUIDED: f64 = 0.25;
@@ -44,10 +44,20 @@ pub fn select(
     let (equal, others): (Vec<&&Pose>, Vec<&&Pose>) = similar.partition(|pose| {
         (pose.depth - best.depth).abs() < DEPTH_TOLERANCE && pose.walls > SIMILAR * best.walls
     });
-    let mate = |pose: &Pose| precise::mate(parts, scene, pose, max_play);
-    let copies =
-        if others.is_empty() { equal.iter().map(|pose| equivalent(pose)).sum() } else { 1 };
-    let mates = [*best].into_iter().chain(others.into_iter().copied()).map(mate).collect();
+    let mut mates: Vec<Mate> = Vec::new();
+    for pose in [*best].into_iter().chain(others.into_iter().copied()) {
+        let mate = precise::mate(parts, scene, pose, max_play);
+        // Poses in which a plug stops at different springs can have one seat.
+        let same = |other: &Mate| {
+            let [a, b] = [other, &mate].map(|mate| mate.pose);
+            a.rotation == b.rotation
+                && (a.translation.vector - b.translation.vector).norm() < DEPTH_TOLERANCE
+        };
+        if !mates.iter().any(same) {
+            mates.push(mate);
+        }
+    }
+    let copies = if mates.len() == 1 { equal.iter().map(|pose| equivalent(pose)).sum() } else { 1 };
     Some(MatingResult { mates, copies })
 }
 

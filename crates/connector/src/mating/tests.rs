@@ -235,7 +235,9 @@ fn a_tongue_in_a_shell_is_no_wall_outside_of_it() {
         block([0.0; 2], [6.6, 0.7], [0.0, 5.0]),
         block([0.0; 2], [10.0, 4.0], [-2.0, 0.0]),
     ];
-    for (overlap, sides, number) in [(0.05, 1, 11), (0.05, 2, 5), (0.25, 3, 0), (0.25, 2, 17)] {
+    // In the last one, two poses at different springs have one seat.
+    let cases = [(0.05, 1, 11), (0.05, 2, 5), (0.25, 3, 0), (0.25, 2, 17), (0.05, 3, 8)];
+    for (overlap, sides, number) in cases {
         let height = overlap + 0.2;
         let along_y =
             |x: f64, side: f64| block([x, side * (1.3 - height / 2.0)], [0.8, height], [1.0, 3.0]);
@@ -243,6 +245,34 @@ fn a_tongue_in_a_shell_is_no_wall_outside_of_it() {
         let springs = [along_y(-2.0, 1.0), along_y(2.0, 1.0), along_x, along_y(0.0, -1.0)];
         let socket = [socket.concat(), springs[..=sides].concat()].concat();
         close(&found(&plug, &socket, number).0, [0.0; 3], [0.2, 0.2]);
+    }
+}
+
+/// The springs overlap the card by most of its thickness, the cover is thinner than they are wide, and walls would face
+/// the card below the bar that stops it.
+#[test]
+fn a_card_rests_on_a_bar_behind_springs_below_a_thin_cover() {
+    let plug =
+        [block([0.0, 0.65], [10.0, 1.2], [0.0, 5.5]), block([0.0, 0.65], [12.0, 1.2], [5.5, 15.0])];
+    let mut socket = [
+        block([0.0, -0.3], [12.0, 0.6], [-0.5, 5.0]),
+        block([0.0, 1.4], [12.0, 0.2], [-0.5, 5.0]),
+        block([-5.525, 0.65], [0.95, 1.3], [-0.5, 5.0]),
+        block([5.525, 0.65], [0.95, 1.3], [-0.5, 5.0]),
+        block([0.0, 0.65], [9.0, 0.8], [-0.5, 0.0]),
+        // Legs: the bar is far above the lowest point.
+        block([-5.5, -0.4], [0.8, 0.4], [-9.0, -0.5]),
+        block([5.5, -0.4], [0.8, 0.4], [-9.0, -0.5]),
+    ]
+    .concat();
+    for x in [-4.0, -2.5, -1.0, 1.0, 2.5, 4.0] {
+        socket.extend(block([x, 0.45], [0.4, 0.9], [1.5, 2.5]));
+    }
+    for number in [5, 12] {
+        let (mate, _) = found(&plug.concat(), &socket, number);
+        close(&mate, [0.0, 0.65, 0.0], [0.1, 0.1]);
+        assert!((mate.depth_m() - 5.0 * MM).abs() < CLOSE, "{mate:?}");
+        assert_eq!(mate.missed_m, 0.0, "{mate:?}");
     }
 }
 

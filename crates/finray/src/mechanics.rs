@@ -15,8 +15,6 @@ use crate::printed::PrintedFinger;
 use input::InputError;
 use input::units::{MM, N_PER_MM};
 use rayon::prelude::*;
-use std::collections::BTreeMap;
-use std::sync::Mutex;
 
 /// Side length of the triangles, m: halving it changes no entry of a stiffness matrix by
 /// more than 2 % of the springs it couples.
@@ -106,32 +104,4 @@ pub fn over_phases(
     // Collected in the order of the phases, so that the first of several errors is returned.
     let all: Vec<_> = (0..PHASES).into_par_iter().map(|i| at(i as f64 / PHASES as f64)).collect();
     all.into_iter().collect()
-}
-
-/// Cache of computed stiffness. The computation is deterministic, so the cache changes no result.
-#[derive(Debug, Default)]
-pub struct StiffnessCache(Mutex<BTreeMap<String, FingerStiffness>>);
-
-impl StiffnessCache {
-    /// Returns the stiffness of a finger with an infill.
-    ///
-    /// # Errors
-    /// See [`Geometry::new`] and [`compute`].
-    pub fn stiffness(
-        &self,
-        finger: &PrintedFinger,
-        design: &InfillDesign,
-    ) -> Result<FingerStiffness, InputError> {
-        // The debug format of a number reads back as the same bits.
-        let key = format!("{finger:?} {design:?}");
-        let cached = self.0.lock().ok().and_then(|cache| cache.get(&key).copied());
-        if let Some(stiffness) = cached {
-            return Ok(stiffness);
-        }
-        let stiffness = compute(&Geometry::new(finger, design)?)?;
-        if let Ok(mut cache) = self.0.lock() {
-            cache.insert(key, stiffness);
-        }
-        Ok(stiffness)
-    }
 }

@@ -4,11 +4,14 @@ use super::{Finger, computed};
 use crate::finger::file::{infill, is_shape};
 use crate::task::finger::Coupling;
 use crate::{DIRECTION_KEY, Design, FingerFile, Prediction, Task};
-use finray::mechanics::{FingerStiffness, StiffnessCache};
+use finray::geometry::Geometry;
+use finray::mechanics::{FingerStiffness, compute};
 use input::units::MM;
 use input::{Check, InputError};
 pub use parameters::numbers::{RCC_KEY, TILTING_KEY};
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::sync::Mutex;
 
 /// Name of a finger model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum, Serialize, Deserialize)]
@@ -35,7 +38,8 @@ pub enum FingerSource {
 pub struct ComputedFingers {
     /// File of shape and material.
     pub file: FingerFile,
-    cache: StiffnessCache,
+    /// Computed stiffness by finger and infill. The computation is deterministic, so the cache changes no result.
+    cache: Mutex<BTreeMap<String, FingerStiffness>>,
 }
 
 /// Source of a finger's remote centre.
@@ -115,7 +119,7 @@ impl FingerSource {
 impl ComputedFingers {
     /// Creates the model of a finger file, with an empty cache.
     pub fn new(file: FingerFile) -> Self {
-        ComputedFingers { file, cache: StiffnessCache::default() }
+        ComputedFingers { file, cache: Mutex::default() }
     }
 
     /// Returns the stiffness of a design, computed from its ribs and cached. An infill of NaN is an error.
@@ -123,6 +127,17 @@ impl ComputedFingers {
     /// # Errors
     /// If the finger cannot be printed.
     pub fn stiffness(&self, design: &Design) -> Result<FingerStiffness, InputError> {
-        self.cache.stiffness(&self.file.with(design)?, &infill(design, None))
+        let (finger, infill) = (self.file.with(design)?, infill(design, None));
+        // The debug format of a number reads back as the same bits.
+        let key = format!("{finger:?} {infill:?}");
+        let cached = self.cache.lock().ok().and_then(|cache| cache.get(&key).copied());
+        if let Some(stiffness) = cached {
+            return Ok(stiffness);
+        }
+        let stiffness = compute(&Geometry::new(&finger, &infill)?)?;
+        if let Ok(mut cache) = self.cache.lock() {
+            cache.insert(key, stiffness);
+        }
+        Ok(stiffness)
     }
 }

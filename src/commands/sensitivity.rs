@@ -53,8 +53,7 @@ impl Request {
             return Err(Failure::usage(problem));
         }
         let template = setup.only_task()?;
-        let errors = setup.uncertainty.as_ref().map(|uncertainty| &uncertainty.errors);
-        let factors = inputs(&setup.space, errors).map_err(Failure::usage)?;
+        let factors = inputs(&setup.space, setup.uncertainty.as_ref()).map_err(Failure::usage)?;
         let sample = Sample::new(factors.len(), self.samples as usize, self.seed);
         // `None` where the simulation diverged.
         let value = |unit: &Vec<f64>| {

@@ -2,7 +2,7 @@
 //! the evaluation at given inputs.
 
 use insertion::evaluation::tolerance;
-use insertion::evaluation::uncertainty::{Draw, Errors};
+use insertion::evaluation::uncertainty::{Draw, Uncertainty};
 use insertion::{
     DENSITY_KEY, DIRECTION_KEY, Design, DesignError, Evaluation, Evaluator, Grasp, Search, Space,
     Template, Variable,
@@ -16,7 +16,7 @@ use std::sync::atomic::AtomicBool;
 ///
 /// # Errors
 /// If the space has no infill density or direction.
-pub fn inputs(space: &Space, errors: Option<&Errors>) -> Result<Vec<Parameter>, String> {
+pub fn inputs(space: &Space, errors: Option<&Uncertainty>) -> Result<Vec<Parameter>, String> {
     for key in [DENSITY_KEY, DIRECTION_KEY] {
         if !space.parameters.iter().any(|variable| variable.key == key) {
             return Err(format!("the space `{}` has no {key}", space.name));
@@ -24,7 +24,7 @@ pub fn inputs(space: &Space, errors: Option<&Errors>) -> Result<Vec<Parameter>, 
     }
     let of_space = space.parameters.iter().map(Variable::parameter);
     let of_space = of_space.filter(|variable| variable.low < variable.high);
-    Ok(of_space.chain(errors.map(Errors::parameters).unwrap_or_default()).collect())
+    Ok(of_space.chain(errors.map(Uncertainty::parameters).unwrap_or_default()).collect())
 }
 
 /// Measures the tolerance window at `unit`, a point of the unit cube of the inputs, by strides and bisection. The

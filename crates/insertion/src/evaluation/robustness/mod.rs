@@ -33,7 +33,7 @@ impl Plan {
 
     /// Returns the plan for success rates, robust ranges or both; `seed` is the seed of the draws.
     pub fn new(uncertainty: &Uncertainty, seed: u64, success: bool, robust: bool) -> Self {
-        let draws = |count| draws(&uncertainty.errors, seed, count);
+        let draws = |count| draws(uncertainty, seed, count);
         let (rate, range) = (uncertainty.success, uncertainty.robust);
         Plan {
             success: success.then(|| (draws(rate.trials), rate)),
@@ -116,7 +116,7 @@ mod tests {
     fn drawn(rig: &dyn Rig, assembly: f64, count: u32) -> (Uncertainty, Vec<Insertion<'_>>) {
         let predicted = predicted([3.0, 1.0], [assembly, 2.0]);
         let nominal = Grasp::of(&finger(3.0, assembly));
-        let drawn = draws(&typical().errors, 5, count).into_iter();
+        let drawn = draws(&typical(), 5, count).into_iter();
         let drawn = drawn.map(|draw| (rig, draw.grasp(nominal, &predicted), draw.offset)).collect();
         (typical(), drawn)
     }

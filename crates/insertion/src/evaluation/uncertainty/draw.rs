@@ -1,6 +1,6 @@
 //! Random draws of the errors of an insertion.
 
-use super::Errors;
+use super::Uncertainty;
 use crate::trial::Conditions;
 use crate::{Estimate, Finger, Grasp, Prediction};
 use ask_tell::normal::StandardNormal;
@@ -32,12 +32,12 @@ pub struct Draw {
 }
 
 /// Returns `count` draws; draw `i` depends only on the errors, the seed and `i`.
-pub fn draws(errors: &Errors, seed: u64, count: u32) -> Vec<Draw> {
+pub fn draws(errors: &Uncertainty, seed: u64, count: u32) -> Vec<Draw> {
     (0..count).map(|i| draw(errors, seed, u64::from(i))).collect()
 }
 
 /// Returns one draw. All random numbers are always drawn, so that omitting an error does not change the others.
-fn draw(errors: &Errors, seed: u64, index: u64) -> Draw {
+fn draw(errors: &Uncertainty, seed: u64, index: u64) -> Draw {
     let mut random = stream(seed, index, PURPOSE);
     let [offset, yaw, compliance, assembly, across]: [f64; 5] =
         std::array::from_fn(|_| random.sample(StandardNormal));
@@ -109,7 +109,7 @@ impl Draw {
 /// Half width of the interval of a normal error, in standard deviations; it covers 95 %.
 const NORMAL_WIDTH_SD: f64 = 2.0;
 
-impl Errors {
+impl Uncertainty {
     /// Returns the errors other than 0 as uniform parameters, normal errors over two standard deviations to either
     /// side. The shift along y is excluded because a window spans it.
     pub fn parameters(&self) -> Vec<Parameter> {
@@ -149,10 +149,11 @@ mod tests {
     use crate::evaluation::uncertainty::YawSpread;
     use crate::tests::fixtures::{predicted, typical};
     use ask_tell::statistics::Moments;
+    use input::shipped::PRIORS;
     use parameters::numbers::{Kind, paths};
 
-    fn errors() -> Errors {
-        typical().errors
+    fn without_errors() -> Uncertainty {
+        Uncertainty::parse(PRIORS[0].text, PRIORS[0].file).unwrap()
     }
 
     fn moments(values: impl Iterator<Item = f64>) -> (f64, f64) {
@@ -168,7 +169,7 @@ mod tests {
 
     #[test]
     fn each_error_has_its_mean_and_spread() {
-        let drawn = draws(&errors(), 3, 4000);
+        let drawn = draws(&typical(), 3, 4000);
         let of = |value: &dyn Fn(&Draw) -> f64| moments(drawn.iter().map(value));
         let uniform = 1.0 / 3f64.sqrt();
         near(of(&|d| d.offset / MM), 0.0, 2.0);
@@ -185,7 +186,7 @@ mod tests {
         let predicted = predicted([1.0, 0.4], [50.0, 1.0]);
         let nominal = Finger::new(1000.0, 50e3);
         let fingers: Vec<Finger> =
-            draws(&errors(), 0, 4000).iter().map(|d| d.finger(&nominal, &predicted)).collect();
+            draws(&typical(), 0, 4000).iter().map(|d| d.finger(&nominal, &predicted)).collect();
         near(moments(fingers.iter().map(|f| f.compliance)), 1000.0, 400.0);
         near(moments(fingers.iter().map(|f| f.assembly)), 50e3, 1e3);
         assert!(fingers.iter().all(|f| f.compliance > 0.0));
@@ -193,11 +194,11 @@ mod tests {
 
     #[test]
     fn more_draws_and_fewer_errors_leave_the_others_as_they_were() {
-        let (few, many) = (draws(&errors(), 1, 5), draws(&errors(), 1, 9));
+        let (few, many) = (draws(&typical(), 1, 5), draws(&typical(), 1, 9));
         assert_eq!(few, many[..5]);
-        assert_ne!(few, draws(&errors(), 2, 5));
+        assert_ne!(few, draws(&typical(), 2, 5));
         assert!(few.iter().all(|draw| draw.conditions.start_across == 0.0));
-        let mut changed = errors();
+        let mut changed = typical();
         changed.offset.across_sd = MM;
         let across = draws(&changed, 1, 5);
         for (a, b) in across.iter().zip(&few) {
@@ -205,7 +206,7 @@ mod tests {
             let conditions = Conditions { start_across: 0.0, ..a.conditions };
             assert_eq!(Draw { conditions, ..*a }, *b);
         }
-        let still = draws(&Errors { yaw: YawSpread::default(), ..errors() }, 1, 5);
+        let still = draws(&Uncertainty { yaw: YawSpread::default(), ..typical() }, 1, 5);
         for (a, b) in still.iter().zip(&few) {
             assert_eq!((a.offset, a.conditions.clearance), (b.offset, b.conditions.clearance));
             assert_eq!(a.conditions.yaw, 0.0);
@@ -226,18 +227,18 @@ mod tests {
 
     #[test]
     fn what_is_certain_does_not_vary() {
-        let varied = Errors { yaw: YawSpread::default(), ..errors() }.parameters();
+        let varied = Uncertainty { yaw: YawSpread::default(), ..typical() }.parameters();
         assert!(varied.iter().all(|one| one.path != SOCKET_YAW));
         let clearance = varied.iter().find(|one| one.path == "cell.clearance_mm").unwrap();
         assert!((clearance.low + 0.03).abs() < 1e-12 && (clearance.high - 0.03).abs() < 1e-12);
-        assert!(Errors::default().parameters().is_empty());
+        assert!(without_errors().parameters().is_empty());
     }
 
     #[test]
     fn without_errors_every_draw_is_the_nominal_trial() {
         let predicted = predicted([1.0, 0.0], [1.0, 0.0]);
         let finger = Finger::new(1e3, 2e4);
-        for draw in draws(&Errors::default(), 0, 20) {
+        for draw in draws(&without_errors(), 0, 20) {
             assert_eq!((draw.offset, draw.conditions), (0.0, Conditions::NOMINAL));
             assert_eq!(draw.finger(&finger, &predicted), finger);
         }

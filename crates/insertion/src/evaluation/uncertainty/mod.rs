@@ -14,26 +14,15 @@ use parameters::numbers;
 use serde::Deserialize;
 use toml::Value;
 
-/// Distribution of errors, and settings of the measures under sampled errors; SI units.
-#[derive(Debug, Clone, PartialEq)]
+/// Distribution of errors, and settings of the measures under sampled errors; SI units. Each error has the source of
+/// its values; a spread of 0 leaves the error out.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Uncertainty {
     /// Name on the command line.
     pub name: String,
     /// One-line description for lists.
     pub description: String,
-    /// Spread of each error.
-    pub errors: Errors,
-    /// Settings of success-rate measurements.
-    pub success: SuccessSettings,
-    /// Settings of robust-range measurements.
-    pub robust: RobustSettings,
-    /// Robot cell whose uncertain parameters are drawn; `errors` are 0 then.
-    pub cell: Option<Priors>,
-}
-
-/// Spread of each error, with the source of the values; a spread of 0 leaves the error out.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Errors {
     /// Position of the start.
     pub offset: OffsetSpread,
     /// Rotation of the socket.
@@ -46,6 +35,15 @@ pub struct Errors {
     pub clearance: ClearanceSpread,
     /// Position of the part in the gripper.
     pub grasp: GraspSpread,
+    /// Settings of success-rate measurements.
+    #[serde(rename = "success_rate")]
+    pub success: SuccessSettings,
+    /// Settings of robust-range measurements.
+    #[serde(rename = "robust_range")]
+    pub robust: RobustSettings,
+    /// Robot cell whose uncertain parameters are drawn; all errors are 0 then.
+    #[serde(skip)]
+    pub cell: Option<Priors>,
 }
 
 /// Settings of a success-rate measurement.
@@ -79,22 +77,6 @@ pub struct RobustSettings {
 pub enum Statistic {
     /// Mean minus a number of standard deviations.
     MeanMinusSd,
-}
-
-/// Keys of an uncertainty file, converted to SI units.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RawUncertainty {
-    name: String,
-    description: String,
-    offset: OffsetSpread,
-    yaw: YawSpread,
-    friction: FrictionSpread,
-    stiffness: StiffnessSpread,
-    clearance: ClearanceSpread,
-    grasp: GraspSpread,
-    success_rate: SuccessSettings,
-    robust_range: RobustSettings,
 }
 
 /// Spread of the position of the start.
@@ -174,17 +156,9 @@ impl Uncertainty {
         if table.get("parameter").is_some() {
             return Self::of_cell(Priors::parse(text, file)?, file);
         }
-        let raw: RawUncertainty = document.read()?;
+        let read = document.read()?;
         numbers::check_file("uncertainty", &table, file)?;
-        let RawUncertainty { offset, yaw, friction, stiffness, clearance, grasp, .. } = raw;
-        Ok(Uncertainty {
-            errors: Errors { offset, yaw, friction, stiffness, clearance, grasp },
-            success: raw.success_rate,
-            robust: raw.robust_range,
-            name: raw.name,
-            description: raw.description,
-            cell: None,
-        })
+        Ok(read)
     }
 
     /// Returns the distribution of the parameters of a robot cell, with the settings of the shipped uncertainty file.
@@ -198,7 +172,12 @@ impl Uncertainty {
         Ok(Uncertainty {
             name: cell.name.clone(),
             description: cell.description.clone(),
-            errors: Errors::default(),
+            offset: OffsetSpread::default(),
+            yaw: YawSpread::default(),
+            friction: FrictionSpread::default(),
+            stiffness: StiffnessSpread::default(),
+            clearance: ClearanceSpread::default(),
+            grasp: GraspSpread::default(),
             cell: Some(cell),
             ..typical
         })
@@ -216,8 +195,8 @@ mod tests {
         let file = UNCERTAINTIES[0];
         let typical = Uncertainty::parse(file.text, file.file).unwrap();
         assert_eq!(typical.name, "typical");
-        assert!((typical.errors.offset.sd - 2e-3).abs() < 1e-15);
-        assert!((typical.errors.friction.half_width - 0.2).abs() < 1e-15);
+        assert!((typical.offset.sd - 2e-3).abs() < 1e-15);
+        assert!((typical.friction.half_width - 0.2).abs() < 1e-15);
         assert_eq!(typical.robust.sd_factor, 1.0);
     }
 

@@ -7,7 +7,7 @@ use input::shipped::{LEVERS, PRIORS};
 use input::units::MM;
 use insertion::{DesignError, Priors, Scenario, Task};
 use parameters::numbers::{CLEARANCE, Kind};
-use parameters::plan::one_at_a_time::{End, farthest};
+use parameters::plan::one_at_a_time::farthest;
 use parameters::{Parameter, Path, Transform};
 
 /// Names of the parameters of `priors/bench.toml` that a user can change; the others belong to fingers and pads.
@@ -77,8 +77,8 @@ fn clearance(task: &Task) -> f64 {
 }
 
 impl LeverParameter {
-    /// Returns value and scenario at a bound, or at the feasible value nearest to it.
-    pub fn at(&self, analysis: &LeverAnalysis<'_>, end: End) -> Option<(f64, Scenario)> {
+    /// Returns value and scenario at a bound (the upper one if `upper`), or at the feasible value nearest to it.
+    pub fn at(&self, analysis: &LeverAnalysis<'_>, upper: bool) -> Option<(f64, Scenario)> {
         let LeverAnalysis { evaluator, template, design, given, .. } = analysis;
         let changed = |to: f64| {
             let value = self.parameter.applied(self.value, to);
@@ -91,7 +91,7 @@ impl LeverParameter {
             evaluator.rig(&scenario, None, 1.0).ok()?;
             Some((value, scenario))
         };
-        farthest(&self.parameter, self.value, end, changed)
+        farthest(&self.parameter, self.value, upper, changed)
     }
 }
 

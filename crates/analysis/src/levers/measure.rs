@@ -6,7 +6,6 @@ use insertion::{
     DENSITY_KEY, DIRECTION_KEY, Design, DesignError, Evaluation, Evaluator, Outcome, Plan,
     Prediction, Scenario, Search, Space, StartRule, Template, grid_mm,
 };
-use parameters::plan::one_at_a_time::End;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
@@ -85,9 +84,9 @@ impl LeverAnalysis<'_> {
         let (mut candidates, mut left_out) = (Vec::new(), Vec::new());
         for lever in lever_parameters(self, &base)? {
             let (mut more, mut values, mut windows) = (Vec::new(), [lever.value; 2], [0; 2]);
-            for (end, bound) in [End::Low, End::High].into_iter().enumerate() {
+            for end in 0..2 {
                 // A chamfer of 0 makes a different scenario of the same shape, whose window can differ.
-                let changed = lever.at(self, bound).filter(|(value, _)| *value != lever.value);
+                let changed = lever.at(self, end == 1).filter(|(value, _)| *value != lever.value);
                 let Some((value, scenario)) = changed else { continue };
                 if scenario != base {
                     (values[end], windows[end]) = (value, scenarios.len() + more.len());

@@ -134,7 +134,7 @@ impl Request {
         if let Some(name) = &self.uncertainty {
             setup = setup.with_named_uncertainty(name)?;
         }
-        let plan = setup.plan(self.seed, |_| setup.uncertainty.is_some())?;
+        let plan = setup.plan(self.seed, [setup.uncertainty.is_some(); 2])?;
         Ok((setup, plan))
     }
 

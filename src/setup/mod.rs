@@ -26,8 +26,8 @@ use input::shipped::{Source, UNCERTAINTIES};
 use insertion::evaluation::template::{printable, within_limits};
 use insertion::evaluation::uncertainty::Uncertainty;
 use insertion::{
-    EngineKind, Evaluator, FingerModelKind, FingerSource, Measure, Plan, Priors, Robot, Space,
-    Task, Template,
+    EngineKind, Evaluator, FingerModelKind, FingerSource, Plan, Priors, Robot, Space, Task,
+    Template,
 };
 use measured::Measured;
 use std::sync::Arc;
@@ -217,12 +217,11 @@ impl Setup {
         }
     }
 
-    /// Returns the plan of the trials for the `wanted` measures, under errors drawn with this seed.
+    /// Returns the plan of the trials for success rates, robust ranges or both, under errors drawn with this seed.
     ///
     /// # Errors
     /// If there is no distribution of errors.
-    pub fn plan(&self, seed: u64, wanted: impl Fn(Measure) -> bool) -> Result<Plan, Failure> {
-        let (success, robust) = (wanted(Measure::SuccessRate), wanted(Measure::RobustRange));
+    pub fn plan(&self, seed: u64, [success, robust]: [bool; 2]) -> Result<Plan, Failure> {
         match &self.uncertainty {
             Some(uncertainty) => Ok(Plan::new(uncertainty, seed, success, robust)),
             None if success || robust => Err(missing(UNCERTAINTY)),

@@ -5,7 +5,6 @@ use super::open::{Ended, OpenStudy, cached_evaluator, confirmer, hint, resume_hi
 use super::optimizer::optimizer;
 use crate::{Context, Failure, RunRequest, Setup, not_stopped};
 use ask_tell::Optimizer;
-use insertion::Measure;
 use insertion::trial::NEVER;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -109,9 +108,8 @@ impl AskTellStudy {
     /// Records that a proposal is being evaluated; returns its number and its encoded work.
     fn assign(&mut self, proposal: Proposal) -> Result<(u64, Vec<u8>), Failure> {
         let OpenStudy { study, setup, .. } = &self.open;
-        let (number, goals) = (proposal.number, study.config.goals());
-        let (seed, success_rate) = (study.config.seed, goals.needs(Measure::SuccessRate));
-        let robust_range = goals.needs(Measure::RobustRange);
+        let (number, seed) = (proposal.number, study.config.seed);
+        let [success_rate, robust_range] = study.config.goals().needs_draws();
         let (provenance, inputs) = (study.provenance().clone(), setup.inputs.clone());
         let work = Work { proposal, seed, success_rate, robust_range, provenance, inputs };
         let bytes = work.encode().map_err(|error| Failure::running(error.to_string()))?;
@@ -197,11 +195,7 @@ pub fn perform(bytes: &[u8], worker: &str, stop: &AtomicBool) -> Result<Vec<u8>,
         let work = Work::decode(bytes).map_err(Failure::input)?;
         let setup = set_up(&work)?;
         work.check_worker(&setup.provenance(), worker).map_err(Failure::input)?;
-        let plan = setup.plan(work.seed, |measure| match measure {
-            Measure::SuccessRate => work.success_rate,
-            Measure::RobustRange => work.robust_range,
-            _ => false,
-        })?;
+        let plan = setup.plan(work.seed, [work.success_rate, work.robust_range])?;
         let result = work.proposal.evaluate(&cached_evaluator(&setup, None, &plan, stop))?;
         not_stopped(stop)?;
         work.encode_result(result).map_err(|error| Failure::running(error.to_string()))

@@ -54,8 +54,7 @@ impl OpenStudy {
         let mut conclusion = run.analyses(&setup, before.bench);
         conclusion.project = conclusion.project.or_else(|| before.project.clone());
         study.set_analyses(conclusion)?;
-        let goals = study.config.goals();
-        let plan = setup.plan(study.config.seed, |measure| goals.needs(measure))?;
+        let plan = setup.plan(study.config.seed, study.config.goals().needs_draws())?;
         let cache = run.cache(&setup);
         Ok(OpenStudy { study, setup, run, plan, cache, new_measurements: 0 })
     }

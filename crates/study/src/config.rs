@@ -173,7 +173,7 @@ impl StudyConfig {
             Aggregate::weighted(weights.clone(), self.tasks.len())
                 .map_err(|error| format!("aggregate: {error}"))?;
         }
-        if self.uncertainty.is_some() != self.goals().needs_draws() {
+        if self.uncertainty.is_some() != self.goals().needs_draws().contains(&true) {
             return Err("uncertainty: needed for success-rate and robust-range only".to_owned());
         }
         if self.race && !self.can_race() {

@@ -125,19 +125,13 @@ pub struct Score {
 }
 
 impl Goals {
-    /// Returns whether a measure is an objective or is constrained.
-    pub fn needs(&self, measure: Measure) -> bool {
-        self.measures().any(|needed| needed == measure)
-    }
-
-    /// Returns whether trials or windows under sampled errors are needed.
-    pub fn needs_draws(&self) -> bool {
-        self.measures().any(Measure::needs_draws)
-    }
-
-    fn measures(&self) -> impl Iterator<Item = Measure> {
-        let constrained = self.constraints.iter().map(|constraint| constraint.measure);
-        self.objectives.measures().iter().copied().chain(constrained)
+    /// Returns whether the success rate and whether the robust range, each under sampled errors, is an objective or
+    /// is constrained.
+    pub fn needs_draws(&self) -> [bool; 2] {
+        [Measure::SuccessRate, Measure::RobustRange].map(|measure| {
+            let constrained = self.constraints.iter().any(|bound| bound.measure == measure);
+            constrained || self.objectives.measures().contains(&measure)
+        })
     }
 
     /// Returns objectives and violations of a design; `None` if a measure has no value on one of the tasks.
@@ -270,7 +264,7 @@ mod tests {
         assert!(goals.order(&[3.0, 1.0], &[4.0, 9.0]).is_gt());
         assert!(goals.order(&[3.0, 1.0], &[3.0, 2.0]).is_lt());
         assert!(goals.order(&[3.0, 1.0], &[3.0, 1.0]).is_eq());
-        assert!(goals.needs(Measure::Range) && !goals.needs(Measure::Slip) && !goals.needs_draws());
+        assert_eq!(goals.needs_draws(), [false; 2]);
     }
 
     #[test]

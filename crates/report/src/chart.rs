@@ -39,16 +39,6 @@ pub(super) fn render(
 /// Axis: label with unit, and range.
 pub(super) type Axis<'a> = (&'a str, Range<f64>);
 
-/// Draws axes with a grid; `title` may be empty.
-pub(super) fn axes<'a, 'b>(
-    area: &'a Area<'b>,
-    title: &str,
-    x: Axis<'_>,
-    y: Axis<'_>,
-) -> Result<Chart<'a, 'b>, PlotError> {
-    framed(area, title, x, y, 62, true)
-}
-
 /// Draws an x axis with vertical grid lines for `count` rows; row i, from 0, extends from y = -i down to -(i + 1).
 /// `left` is the width for the row names, pixels.
 pub(super) fn rows<'a, 'b>(
@@ -58,26 +48,27 @@ pub(super) fn rows<'a, 'b>(
     count: usize,
     left: u32,
 ) -> Result<Chart<'a, 'b>, PlotError> {
-    framed(area, title, x, ("", -(count.max(1) as f64)..0.0), left, false)
+    axes(area, title, x, ("", -(count.max(1) as f64)..0.0), Some(left))
 }
 
-/// Draws axes, with `left` pixels for the labels of y; without `y_grid` no y axis.
-fn framed<'a, 'b>(
+/// Draws axes with a grid; `title` may be empty. With `names`, the width of the names of rows, pixels, instead of a y axis
+/// and its part of the grid.
+pub(super) fn axes<'a, 'b>(
     area: &'a Area<'b>,
     title: &str,
     x: Axis<'_>,
     y: Axis<'_>,
-    left: u32,
-    y_grid: bool,
+    names: Option<u32>,
 ) -> Result<Chart<'a, 'b>, PlotError> {
     let mut builder = ChartBuilder::on(area);
-    builder.margin(10).margin_right(18).x_label_area_size(48).y_label_area_size(left);
+    builder.margin(10).margin_right(18).x_label_area_size(48);
+    builder.y_label_area_size(names.unwrap_or(62));
     if !title.is_empty() {
         builder.caption(title, font(19).color(&INK.rgb));
     }
     let mut chart = builder.build_cartesian_2d(x.1, y.1)?;
     let mut mesh = chart.configure_mesh();
-    if !y_grid {
+    if names.is_some() {
         mesh.disable_y_mesh().disable_y_axis();
     }
     mesh.x_desc(x.0)

@@ -214,7 +214,7 @@ fn draw(area: &Area<'_>, comparison: &Comparison) -> DrawResult {
     let range = padded_range(values.flatten().chain([comparison.best_known_mm]), 0.06);
     let label = format!("{} (mm)", comparison.objective);
     let x = ("number of evaluations", 0.0..longest * 1.02 + 0.5);
-    let mut chart = axes(area, &title, x, (&label, range))?;
+    let mut chart = axes(area, &title, x, (&label, range), None)?;
     let coloured = || groups.iter().zip(COLOURS.iter().cycle());
     for (group, colour) in coloured().filter(|(group, _)| group.studies > 1) {
         let mut outline = quartile(group, 0);

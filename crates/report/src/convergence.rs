@@ -97,7 +97,7 @@ fn draw(area: &Area<'_>, record: &StudyRecord) -> DrawResult {
         None => (format!("hypervolume ({})", volume_unit(objectives)), "hypervolume so far"),
     };
     if count == 0 {
-        let mut chart = axes(area, "", x, (&y_label, range))?;
+        let mut chart = axes(area, "", x, (&y_label, range), None)?;
         let style = text_style(17, MUTED, HPos::Center, VPos::Center);
         return label(&mut chart, (0.5, 0.5), (0, 0), "no evaluations yet", &style);
     }
@@ -126,7 +126,7 @@ fn draw(area: &Area<'_>, record: &StudyRecord) -> DrawResult {
     series.retain(|(points, ..)| !points.is_empty());
     let best_line = ORANGE.rgb.stroke_width(3);
     let area = legend_above(area, &series, (best_line, name))?;
-    let mut chart = axes(&area, "", x, (&y_label, range))?;
+    let mut chart = axes(&area, "", x, (&y_label, range), None)?;
     if record.settled {
         dashed(&mut chart, [bottom, top].map(|value| (last, value)))?;
     }

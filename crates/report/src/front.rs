@@ -42,7 +42,7 @@ fn draw(area: &Area<'_>, record: &StudyRecord) -> DrawResult {
     let [first, second] = [first, second].map(|measure| measure.label());
     let x = (first.as_str(), padded_range(all().map(|(_, p)| p.0), 0.08));
     let y = (second.as_str(), padded_range(all().map(|(_, p)| p.1), 0.16));
-    let mut chart = axes(area, "", x, y)?;
+    let mut chart = axes(area, "", x, y, None)?;
     let of = |feasible| all().filter(move |(r, _)| r.feasible().is_some() == feasible);
     points(&mut chart, of(true).map(|(_, p)| p), PointMark::dot(BLUE, 3), "each evaluation")?;
     let ring = PointMark::ring(MUTED, 3, 1);

@@ -111,7 +111,7 @@ fn draw(area: &Area<'_>, map: &CaptureMap) -> DrawResult {
     let name = |axis: &MapAxis| format!("error of the start: {} ({})", axis.name, axis.unit);
     let [first, second] = &map.axes;
     let (x_name, y_name) = (name(first), format!("{} ({})", second.name, second.unit));
-    let mut chart = axes(area, "", (&x_name, range(first)), (&y_name, range(second)))?;
+    let mut chart = axes(area, "", (&x_name, range(first)), (&y_name, range(second)), None)?;
     for (at, row) in map.outcomes.iter().enumerate() {
         let y = second.value(at);
         let mut from = 0;

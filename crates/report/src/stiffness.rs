@@ -149,7 +149,7 @@ fn draw(area: &Area<'_>, model: &Model, axis: Axis, by_direction: bool) -> DrawR
     let top = y.end;
     let label = format!("stiffness in {} (N/mm)", axis.label());
     let x_axis = (if by_direction { "infill direction (°)" } else { "infill density (%)" }, x);
-    let mut chart = axes(area, "", x_axis, (&label, y))?;
+    let mut chart = axes(area, "", x_axis, (&label, y), None)?;
     for limit in [limits.start, limits.end] {
         dashed(&mut chart, [(limit, 0.0), (limit, top)])?;
     }

@@ -299,7 +299,7 @@ fn draw(area: &Area<'_>, one: &Compared, axis: usize) -> DrawResult {
     let y_label = format!("force along {} (N)", AXES[axis]);
     let time = padded_range(all().map(|point| point.0), 0.0);
     let aside = 0.012 * (time.end - time.start);
-    let mut chart = axes(area, "", ("time (s)", time), (&y_label, force))?;
+    let mut chart = axes(area, "", ("time (s)", time), (&y_label, force), None)?;
     let phases = [(logged.touch, "search"), (logged.push, "push")];
     for (at, phase) in phases.into_iter().filter(|(at, _)| at + 1 < logged.curves.force.len()) {
         let time = at as f64 * STEP_S;

@@ -29,7 +29,7 @@ fn draw(area: &Area<'_>, film: &Film) -> DrawResult {
     let top = force.end;
     let y = ("force plug to socket (N)", force);
     let title = format!("{}, {}: {}", film.task.name, film.label, recording.trial.outcome.label());
-    let mut chart = axes(area, &title, x, y)?;
+    let mut chart = axes(area, &title, x, y, None)?;
     let success = vec![(needed, 0.0), (needed, top)];
     line(&mut chart, success, MUTED.rgb.stroke_width(1), "depth that counts as inserted")?;
     let ended = path.last().copied();

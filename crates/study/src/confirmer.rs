@@ -121,7 +121,18 @@ impl Confirmer<'_> {
                 return Ok(Advice::Settled);
             }
             let chosen: Vec<&Recorded> = chosen.iter().map(|&at| &current[at]).collect();
-            log.add(self.confirm_designs(&chosen, log, config.seed)?)?;
+            // In parallel; the results are in order.
+            let walking = chosen.iter().any(|found| log.get(found).is_some());
+            let step = if walking { ConfirmationStep::Walked } else { ConfirmationStep::Repeated };
+            let count = AtomicUsize::new(0);
+            let one = |found: &&Recorded| {
+                let result = self.confirm_design(found, log, config.seed)?;
+                (self.done)(step, found, [count.fetch_add(1, Ordering::Relaxed) + 1, chosen.len()]);
+                Ok(result)
+            };
+            let results: Result<Vec<_>, StudyError> =
+                self.pool.install(|| chosen.par_iter().map(one).collect());
+            log.add(results?.into_iter().flatten().collect())?;
             if self.stopped() {
                 return Ok(Advice::Search);
             }
@@ -148,52 +159,25 @@ impl Confirmer<'_> {
                 let firm = self.firm(found, &[], seed)?;
                 ConfirmedDesign { evaluation: found.index, firm, walked: None }
             }
-            (Some(row), _) => self.walk(found, row.clone(), seed)?,
+            // Walks the windows of the design and repeats the ends of those that changed.
+            (Some(row), _) => {
+                let walked = self.walker.evaluate(&found.design, None);
+                let tasks = walked
+                    .map_err(|source| StudyError::impossible(found.index, &found.design, source))?
+                    .tasks;
+                let walked = Recorded { tasks: tasks.clone(), ..found.clone() };
+                let same = |(before, now): (&Evaluation, &Evaluation)| before.window == now.window;
+                let windows = found.tasks.iter().zip(&tasks).zip(&row.firm);
+                let as_before: Vec<Option<FirmResult>> =
+                    windows.map(|(windows, firm)| same(windows).then_some(*firm)).collect();
+                let firm = self.firm(&walked, &as_before, seed)?;
+                let computed =
+                    self.by_ribs.as_ref().map(|evaluator| self.computed(evaluator, &found.design));
+                ConfirmedDesign { walked: Some(Walk { tasks, firm, computed }), ..row.clone() }
+            }
         };
         // After cancellation trials may have been skipped.
         Ok((!self.stopped()).then_some((row, true)))
-    }
-
-    /// Confirms designs in parallel; returns the results as [`confirm_design`](Self::confirm_design), in order.
-    fn confirm_designs(
-        &self,
-        designs: &[&Recorded],
-        log: &ConfirmationLog,
-        seed: u64,
-    ) -> Result<Vec<(ConfirmedDesign, bool)>, StudyError> {
-        let walking = designs.iter().any(|found| log.get(found).is_some());
-        let step = if walking { ConfirmationStep::Walked } else { ConfirmationStep::Repeated };
-        let count = AtomicUsize::new(0);
-        let one = |found: &&Recorded| {
-            let result = self.confirm_design(found, log, seed)?;
-            (self.done)(step, found, [count.fetch_add(1, Ordering::Relaxed) + 1, designs.len()]);
-            Ok(result)
-        };
-        let results: Result<Vec<_>, StudyError> =
-            self.pool.install(|| designs.par_iter().map(one).collect());
-        Ok(results?.into_iter().flatten().collect())
-    }
-
-    /// Walks the windows of a design and repeats the ends of those that changed.
-    fn walk(
-        &self,
-        searched: &Recorded,
-        row: ConfirmedDesign,
-        seed: u64,
-    ) -> Result<ConfirmedDesign, StudyError> {
-        let found = self.walker.evaluate(&searched.design, None);
-        let tasks = found
-            .map_err(|source| StudyError::impossible(searched.index, &searched.design, source))?
-            .tasks;
-        let walked = Recorded { tasks: tasks.clone(), ..searched.clone() };
-        let same = |(before, now): (&Evaluation, &Evaluation)| before.window == now.window;
-        let windows = searched.tasks.iter().zip(&tasks).zip(&row.firm);
-        let as_before: Vec<Option<FirmResult>> =
-            windows.map(|(windows, firm)| same(windows).then_some(*firm)).collect();
-        let firm = self.firm(&walked, &as_before, seed)?;
-        let computed =
-            self.by_ribs.as_ref().map(|evaluator| self.computed(evaluator, &searched.design));
-        Ok(ConfirmedDesign { walked: Some(Walk { tasks, firm, computed }), ..row })
     }
 
     /// Evaluates a design with the stiffnesses computed from its ribs.

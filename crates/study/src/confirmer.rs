@@ -6,9 +6,7 @@ use super::rule::{Rank, Rule};
 use super::{ByRibs, CachedEvaluator, Recorded, Study, StudyError, write_analysis};
 use ask_tell::Grid;
 use ask_tell::gp::{Advice, StoppingCriterion};
-use insertion::{
-    Design, DesignError, Evaluate, Evaluation, Evaluator, FirmResult, Search, Template,
-};
+use insertion::{DesignError, Evaluate, Evaluation, Evaluator, FirmResult, Search, Template};
 use rayon::ThreadPool;
 use rayon::prelude::*;
 use std::path::PathBuf;
@@ -171,24 +169,20 @@ impl Confirmer<'_> {
                 let as_before: Vec<Option<FirmResult>> =
                     windows.map(|(windows, firm)| same(windows).then_some(*firm)).collect();
                 let firm = self.firm(&walked, &as_before, seed)?;
-                let computed =
-                    self.by_ribs.as_ref().map(|evaluator| self.computed(evaluator, &found.design));
+                let computed = self.by_ribs.as_ref().map(|evaluator| {
+                    let evaluations = evaluator.evaluate_by(&found.design, |scenario| {
+                        evaluator.simulate_or_teach(scenario, Search::default(), self.walker.stop)
+                    });
+                    match evaluations {
+                        Ok(evaluations) => ByRibs::Measured(evaluations.tasks),
+                        Err(why) => ByRibs::Refused(why.to_string()),
+                    }
+                });
                 ConfirmedDesign { walked: Some(Walk { tasks, firm, computed }), ..row.clone() }
             }
         };
         // After cancellation trials may have been skipped.
         Ok((!self.stopped()).then_some((row, true)))
-    }
-
-    /// Evaluates a design with the stiffnesses computed from its ribs.
-    fn computed(&self, evaluator: &Evaluator, design: &Design) -> ByRibs {
-        let evaluations = evaluator.evaluate_by(design, |scenario| {
-            evaluator.simulate_or_teach(scenario, Search::default(), self.walker.stop)
-        });
-        match evaluations {
-            Ok(evaluations) => ByRibs::Measured(evaluations.tasks),
-            Err(why) => ByRibs::Refused(why.to_string()),
-        }
     }
 
     /// Determines the firm window of a design on each task, at whose ends all repeats insert; those in `known` are

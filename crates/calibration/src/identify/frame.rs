@@ -32,7 +32,7 @@ struct Raw {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Frame {
     /// Pose of the task's frame in the base, m.
-    base: Isometry3<f64>,
+    pub(super) base: Isometry3<f64>,
     /// Orientation of the upright TCP in the task's frame.
     upright: UnitQuaternion<f64>,
     /// 1 if the recorded force is that on the tool, -1 if it is the reaction, exerted by the tool.
@@ -100,11 +100,6 @@ impl Frame {
             ));
         }
         Ok(Tcp { position, tilt: turned.x })
-    }
-
-    /// Converts a recorded force in the base to the force on the tool in the task's frame, N.
-    pub(super) fn force_of_base(&self, force: Vector3<f64>) -> Vector3<f64> {
-        self.force(self.base.rotation.inverse() * force)
     }
 
     /// Converts a recorded force in the task's frame to the force on the tool, N.

@@ -181,7 +181,8 @@ impl<'a> Table<'a> {
         let (tcp, target, force) = match self.rtde {
             Some(frame) => {
                 let target = (!goal.is_empty()).then(|| of_base(frame, &goal)).transpose()?;
-                (of_base(frame, &numbers[1..7])?, target, frame.force_of_base(vector(force)))
+                let force = frame.force(frame.base.rotation.inverse() * vector(force));
+                (of_base(frame, &numbers[1..7])?, target, force)
             }
             None => {
                 let of = |place: &[f64]| match exceeding(place, MAX_REACH / MM) {

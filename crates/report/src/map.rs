@@ -43,7 +43,23 @@ pub fn svg(map: &CaptureMap) -> Result<String, ReportError> {
     let height = ROW as u32 * rows + 10;
     render("the capture map", (SIZE.0, SIZE.1 + height), |area| {
         let (top, body) = area.split_vertically(height);
-        draw_head(&top, &head)?;
+        let [title, legend] = &head;
+        let text = |size| text_style(size, INK, HPos::Left, VPos::Center);
+        let mut middles = (0..).map(|row| ROW * row + 18);
+        for (parts, y) in title.iter().zip(&mut middles) {
+            let line = parts.iter().map(|(text, ..)| &**text).collect::<Vec<_>>().join(" ");
+            top.draw_text(&line, &text(17), (LEFT, y))?;
+        }
+        for (row, y) in legend.iter().zip(middles) {
+            for (entry, colour, x) in row {
+                let square = [(x - 20, y - 7), (x - 6, y + 7)];
+                match colour {
+                    Some(colour) => top.draw(&Rectangle::new(square, colour.rgb.filled())),
+                    None => top.draw(&Circle::new((x - 13, y), 2, MUTED.rgb.filled())),
+                }?;
+                top.draw_text(entry, &text(15), (*x, y))?;
+            }
+        }
         draw(&body, map)
     })
 }
@@ -83,26 +99,6 @@ fn head(map: &CaptureMap) -> [Vec<Vec<Entry>>; 2] {
     let shown = COLOURS.into_iter().filter(|(outcome, _)| occurs(*outcome));
     let entries = shown.map(|(outcome, colour)| (numbered(outcome), Some(colour)));
     [title, wrapped(entries.chain([("simulated".to_owned(), None)]), 20)]
-}
-
-fn draw_head(area: &Area<'_>, [title, legend]: &[Vec<Vec<Entry>>; 2]) -> DrawResult {
-    let text = |size| text_style(size, INK, HPos::Left, VPos::Center);
-    let mut middles = (0..).map(|row| ROW * row + 18);
-    for (parts, y) in title.iter().zip(&mut middles) {
-        let line = parts.iter().map(|(text, ..)| &**text).collect::<Vec<_>>().join(" ");
-        area.draw_text(&line, &text(17), (LEFT, y))?;
-    }
-    for (row, y) in legend.iter().zip(middles) {
-        for (entry, colour, x) in row {
-            let square = [(x - 20, y - 7), (x - 6, y + 7)];
-            match colour {
-                Some(colour) => area.draw(&Rectangle::new(square, colour.rgb.filled())),
-                None => area.draw(&Circle::new((x - 13, y), 2, MUTED.rgb.filled())),
-            }?;
-            area.draw_text(entry, &text(15), (*x, y))?;
-        }
-    }
-    Ok(())
 }
 
 fn draw(area: &Area<'_>, map: &CaptureMap) -> DrawResult {

@@ -78,7 +78,13 @@ pub fn trace<T: Traceable>(limit: Node, measure: &(dyn Fn(Node) -> T + Sync)) ->
         if probed {
             break;
         }
-        traced.probe();
+        // Simulates randomly chosen inferred points whose neighbours are all inferred and equal to them.
+        let same = |own: T, other: &NodeOutcome<T>| !other.simulated && !differ(other.outcome, own);
+        let mut uniform =
+            traced.inferred(|own, beside| beside.iter().all(|other| same(own, other)));
+        uniform.shuffle(&mut stream(0, 0, "probes of a capture map"));
+        uniform.truncate(PROBES);
+        traced.simulate(uniform, MAX_TRIALS);
         probed = true;
     }
     traced.refine(|a, b| a != b, MAX_TRIALS);
@@ -171,15 +177,6 @@ impl<T: Traceable> TracedMap<'_, T> {
             (true, false) if !second.is_empty() => second,
             _ => [first, second].concat(),
         }
-    }
-
-    /// Simulates randomly chosen inferred points whose neighbours are all inferred and equal to them.
-    fn probe(&mut self) {
-        let same = |own: T, other: &NodeOutcome<T>| !other.simulated && !differ(other.outcome, own);
-        let mut uniform = self.inferred(|own, beside| beside.iter().all(|other| same(own, other)));
-        uniform.shuffle(&mut stream(0, 0, "probes of a capture map"));
-        uniform.truncate(PROBES);
-        self.simulate(uniform, MAX_TRIALS);
     }
 
     /// Simulates inferred points next to a trial with a different outcome, until none is left or the trials run out.

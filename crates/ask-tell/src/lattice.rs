@@ -16,7 +16,10 @@ pub(super) fn lattice(grid: Grid) -> impl Iterator<Item = GridPoint> + Send {
     (0..=LAST_STAGE).flat_map(move |stage| {
         let axes = stage_levels(&grid, stage);
         let size = axes.iter().fold(1u128, |n, a| n.saturating_mul(a.len() as u128));
-        let stride = coprime_stride(size);
+        // The first number at or above the golden section of `size` that is coprime to it.
+        let section =
+            (size / 1_000_000).saturating_mul(618_034) + size % 1_000_000 * 618_034 / 1_000_000;
+        let stride = (section.max(1)..).find(|&s| gcd(s, size) == 1).unwrap_or(1);
         (0..size).map(move |visited| decode(mul_mod(visited, stride, size), &axes))
     })
 }
@@ -46,13 +49,6 @@ fn decode(mut index: u128, axes: &[Vec<u32>]) -> GridPoint {
         index /= radix;
     }
     GridPoint(point)
-}
-
-/// Returns the first number at or above the golden section of `size` that is coprime to it.
-fn coprime_stride(size: u128) -> u128 {
-    let section =
-        (size / 1_000_000).saturating_mul(618_034) + size % 1_000_000 * 618_034 / 1_000_000;
-    (section.max(1)..).find(|&s| gcd(s, size) == 1).unwrap_or(1)
 }
 
 fn gcd(a: u128, b: u128) -> u128 {

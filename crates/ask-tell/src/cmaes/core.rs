@@ -150,25 +150,20 @@ impl CmaEs {
             mean_step.axpy(w, y, 1.0);
         }
         self.mean.axpy(self.sigma, &mean_step, 1.0);
-        let h_sigma = self.update_paths(&p, &mean_step);
+        // The evolution paths (43) and (45); `h_sigma` is whether the path of C is updated in full.
+        let gain = sqrt(p.c_sigma * (2.0 - p.c_sigma) * p.mu_eff);
+        self.p_sigma.axpy(gain, &self.whiten(&mean_step), 1.0 - p.c_sigma);
+        let warm = sqrt(1.0 - pow(1.0 - p.c_sigma, 2.0 * self.generation as f64));
+        let limit = (1.4 + 2.0 / (self.n as f64 + 1.0)) * p.chi_n;
+        let h_sigma = self.p_sigma.norm() / warm < limit;
+        let gain = if h_sigma { sqrt(p.c_c * (2.0 - p.c_c) * p.mu_eff) } else { 0.0 };
+        self.p_c.axpy(gain, &mean_step, 1.0 - p.c_c);
         self.update_covariance(&p, &steps, h_sigma);
         // (44); the exponent is limited to 1 as in the tutorial's example code.
         let surplus = self.p_sigma.norm() / p.chi_n - 1.0;
         self.sigma *= exp((p.c_sigma / p.d_sigma * surplus).min(1.0));
         self.keep_min_std();
         self.decompose();
-    }
-
-    /// Updates both evolution paths (43), (45) and returns `h_sigma`, whether the path of C is updated in full.
-    fn update_paths(&mut self, p: &Parameters, mean_step: &DVector<f64>) -> bool {
-        let gain = sqrt(p.c_sigma * (2.0 - p.c_sigma) * p.mu_eff);
-        self.p_sigma.axpy(gain, &self.whiten(mean_step), 1.0 - p.c_sigma);
-        let warm = sqrt(1.0 - pow(1.0 - p.c_sigma, 2.0 * self.generation as f64));
-        let limit = (1.4 + 2.0 / (self.n as f64 + 1.0)) * p.chi_n;
-        let h_sigma = self.p_sigma.norm() / warm < limit;
-        let gain = if h_sigma { sqrt(p.c_c * (2.0 - p.c_c) * p.mu_eff) } else { 0.0 };
-        self.p_c.axpy(gain, mean_step, 1.0 - p.c_c);
-        h_sigma
     }
 
     /// Updates C (46), (47).

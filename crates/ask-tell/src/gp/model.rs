@@ -75,7 +75,16 @@ impl Gp {
     ) -> Option<Self> {
         let signal = libm::exp(theta.log_signal);
         let points = ScaledPoints::new(x, theta);
-        let covariance = lower_covariance(&points.columns, signal, y.len());
+        // The lower triangle, zeros above.
+        let mut covariance = DMatrix::zeros(y.len(), y.len());
+        for (j, column) in covariance.as_mut_slice().chunks_exact_mut(y.len().max(1)).enumerate() {
+            let lower = &mut column[j..];
+            for axis in &points.columns {
+                let x = axis[j];
+                lower.iter_mut().zip(&axis[j..]).for_each(|(r2, c)| *r2 += (c - x) * (c - x));
+            }
+            lower.iter_mut().for_each(|r2| *r2 = signal * matern52(*r2));
+        }
         let mut noise = noise_floor + libm::exp(theta.log_noise);
         for _ in 0..8 {
             let mut noisy = covariance.clone();
@@ -154,20 +163,6 @@ impl Gp {
     fn covariances(&self, x: &[f64]) -> DVector<f64> {
         covariances(&self.points.distances2(x), self.signal)
     }
-}
-
-/// Returns the lower triangle of the covariance matrix of scaled points, zeros above.
-fn lower_covariance(columns: &[Vec<f64>], signal: f64, n: usize) -> DMatrix<f64> {
-    let mut covariance = DMatrix::zeros(n, n);
-    for (j, column) in covariance.as_mut_slice().chunks_exact_mut(n.max(1)).enumerate() {
-        let lower = &mut column[j..];
-        for axis in columns {
-            let x = axis[j];
-            lower.iter_mut().zip(&axis[j..]).for_each(|(r2, c)| *r2 += (c - x) * (c - x));
-        }
-        lower.iter_mut().for_each(|r2| *r2 = signal * matern52(*r2));
-    }
-    covariance
 }
 
 /// Returns the covariances at these squared distances.

@@ -76,7 +76,16 @@ impl Search {
     fn ask(&mut self, n: usize) -> Result<Vec<Value>, String> {
         check_count("ask", n, self.problem.parameters.len())?;
         if n > 0 && self.asked == self.proposals.len() {
-            self.check_complete()?;
+            const SHOWN: usize = 8;
+            let open = (self.first..self.asked).filter(|&id| self.proposals[id].merit.is_none());
+            let ids: Vec<String> = open.map(|id| id.to_string()).collect();
+            if !ids.is_empty() {
+                let shown = ids[..ids.len().min(SHOWN)].join(", ");
+                let more = if ids.len() > SHOWN { ", .." } else { "" };
+                return Err(format!(
+                    "ask: tell the values of ids {shown}{more} first (null for a failed evaluation)"
+                ));
+            }
             let points = self.optimizer.ask(self.problem.batch.unwrap_or(n)).into_iter();
             self.proposals.extend(points.map(|point| Proposal { point, merit: None }));
         }
@@ -84,20 +93,6 @@ impl Search {
         let ids = std::mem::replace(&mut self.asked, end)..end;
         let asked = |id: usize| json!({"id": id, "values": self.values(&self.proposals[id].point)});
         Ok(ids.map(asked).collect())
-    }
-
-    fn check_complete(&self) -> Result<(), String> {
-        const SHOWN: usize = 8;
-        let open = (self.first..self.asked).filter(|&id| self.proposals[id].merit.is_none());
-        let ids: Vec<String> = open.map(|id| id.to_string()).collect();
-        if ids.is_empty() {
-            return Ok(());
-        }
-        let shown = ids[..ids.len().min(SHOWN)].join(", ");
-        let more = if ids.len() > SHOWN { ", .." } else { "" };
-        Err(format!(
-            "ask: tell the values of ids {shown}{more} first (null for a failed evaluation)"
-        ))
     }
 
     /// Returns the number of results, the best result so far, and the stop reason if the search has ended.

@@ -153,20 +153,16 @@ impl<'a> Picture<'a> {
             let corners = [0, 1].map(|end| frame.at(&Point3::new(x[end], y[end], 0.0)));
             drawing.rectangle(corners, 0.0, Style::line("#a01818", 1.5));
         } else {
-            self.fingers(drawing, frame);
+            let grip = &self.task.grip;
+            for (side, face) in [-1.0, 1.0].into_iter().zip(grip.faces_y) {
+                let pose = self.start * Pose::translation(0.0, face, grip.tcp_z);
+                for geom in Pad::PUBLISHED.geoms(grip.shoulder(), side) {
+                    frame.polygon(drawing, &geom, &pose, FINGERS);
+                }
+            }
         }
         self.path(drawing, frame);
         frame.scale_bar(drawing);
-    }
-
-    fn fingers(&self, drawing: &mut Drawing, frame: &Frame) {
-        let grip = &self.task.grip;
-        for (side, face) in [-1.0, 1.0].into_iter().zip(grip.faces_y) {
-            let pose = self.start * Pose::translation(0.0, face, grip.tcp_z);
-            for geom in Pad::PUBLISHED.geoms(grip.shoulder(), side) {
-                frame.polygon(drawing, &geom, &pose, FINGERS);
-            }
-        }
     }
 
     fn path(&self, drawing: &mut Drawing, frame: &Frame) {

@@ -21,8 +21,12 @@ pub fn with_strategy(text: &str, after: &Strategy) -> Result<String, TomlError> 
             old.insert("phase", Item::ArrayOfTables(phases));
         }
         update(old, new);
-        if let Some(Item::Value(rule)) = old.remove("start") {
-            comment_above(old, "start_mm", &format!("# start was {}", bare(&rule)));
+        if let Some(Item::Value(rule)) = old.remove("start")
+            && let Some(mut key) = old.key_mut("start_mm")
+        {
+            let decor = key.leaf_decor_mut();
+            let before = decor.prefix().and_then(|raw| raw.as_str()).unwrap_or("").to_owned();
+            decor.set_prefix(format!("{before}# start was {}\n", bare(&rule)));
         }
         let phases = old.get_mut("phase").and_then(Item::as_array_of_tables_mut);
         if let (Some(from), Some(to)) = (phases, new["phase"].as_array_of_tables()) {
@@ -95,14 +99,6 @@ fn replace(old: &mut ArrayOfTables, new: &ArrayOfTables) {
         phase.decor_mut().set_prefix(above);
         phase.set_position(None);
         old.push(phase);
-    }
-}
-
-fn comment_above(table: &mut Table, key: &str, comment: &str) {
-    if let Some(mut key) = table.key_mut(key) {
-        let before =
-            key.leaf_decor().prefix().and_then(|raw| raw.as_str()).unwrap_or("").to_owned();
-        key.leaf_decor_mut().set_prefix(format!("{before}{comment}\n"));
     }
 }
 

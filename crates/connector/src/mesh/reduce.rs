@@ -55,14 +55,32 @@ pub fn reduced(surface: Surface) -> Surface {
         if versions != [from, to].map(|corner| mesh.version[corner]) {
             continue;
         }
-        mesh.collapse(from, to, cost as f64 * 1e-12);
+        mesh.error[to] = mesh.error[to].max(cost as f64 * 1e-12);
+        for face in std::mem::take(&mut mesh.about[from]) {
+            if mesh.faces[face].contains(&to) {
+                for corner in mesh.faces[face] {
+                    mesh.about[corner].retain(|&other| other != face);
+                }
+            } else {
+                mesh.faces[face] =
+                    mesh.faces[face].map(|corner| if corner == from { to } else { corner });
+                mesh.about[to].push(face);
+            }
+        }
         left -= 2;
         let changed: Vec<_> = mesh.neighbours(to).into_iter().chain([to]).collect();
         changed.iter().for_each(|&corner| mesh.version[corner] += 1);
         changed.iter().for_each(|&corner| mesh.queue(corner, &mut queue));
     }
-    let (points, faces) = mesh.remaining();
-    Surface { points, faces, was_inward }
+    let mut points = Vec::new();
+    let mut number = vec![usize::MAX; mesh.points.len()];
+    for corner in (0..mesh.points.len()).filter(|&corner| !mesh.about[corner].is_empty()) {
+        number[corner] = points.len();
+        points.push(mesh.points[corner]);
+    }
+    let left: BTreeSet<usize> = mesh.about.iter().flatten().copied().collect();
+    let faces = left.iter().map(|&face| mesh.faces[face].map(|corner| number[corner]));
+    Surface { points, faces: faces.collect(), was_inward }
 }
 
 /// Collapse: its error, pm, the removed corner and the one that replaces it, and their versions.
@@ -139,34 +157,6 @@ impl Decimation {
         before.extend(about.map(facet));
         let come = within(Facet::farthest(&after, &before))?;
         Some(self.error[from] + gone.max(come))
-    }
-
-    fn collapse(&mut self, from: usize, to: usize, error: f64) {
-        self.error[to] = self.error[to].max(error);
-        for face in std::mem::take(&mut self.about[from]) {
-            if self.faces[face].contains(&to) {
-                for corner in self.faces[face] {
-                    self.about[corner].retain(|&other| other != face);
-                }
-            } else {
-                self.faces[face] =
-                    self.faces[face].map(|corner| if corner == from { to } else { corner });
-                self.about[to].push(face);
-            }
-        }
-    }
-
-    /// Returns the remaining corners and faces.
-    fn remaining(&self) -> (Vec<Point3<f64>>, Vec<[usize; 3]>) {
-        let mut points = Vec::new();
-        let mut number = vec![usize::MAX; self.points.len()];
-        for corner in (0..self.points.len()).filter(|&corner| !self.about[corner].is_empty()) {
-            number[corner] = points.len();
-            points.push(self.points[corner]);
-        }
-        let left: BTreeSet<usize> = self.about.iter().flatten().copied().collect();
-        let faces = left.iter().map(|&face| self.faces[face].map(|corner| number[corner]));
-        (points, faces.collect())
     }
 }
 

@@ -160,7 +160,18 @@ pub fn task(pair: &Pair, name: &str, like: Option<&Task>, size: Option<Size>) ->
         let grasp = grip::handle(&placed.plug, size, pair.depth + top(&placed).max(0.0));
         (placed, grasp)
     });
-    let (mut parts, deviation) = skins(&placed, pair.depth);
+    // The parts of plug (0) and socket (1) that the other body can touch, and the worst deviation of either from its
+    // drawing.
+    let mated: Vec<Triangle> =
+        placed.plug.iter().map(|t| t.map(|p| p - Vector3::z() * pair.depth)).collect();
+    let reach = Reach::new(&mated, &placed.socket, placed.play[0].max(placed.play[1]));
+    let ((plug, off), (socket, its)) = rayon::join(
+        || checked_skin("plug", &mated, |face, normal| reach.of_plug(face, normal)),
+        || checked_skin("socket", &placed.socket, |face, normal| reach.of_socket(face, normal)),
+    );
+    let up = |part: Part| Part { solid: raised(part.solid, pair.depth), ..part };
+    let mut parts = [plug.into_iter().map(up).collect(), socket];
+    let deviation = worst([off, its]);
     let tight = placed.play.iter().any(|play| *play < MIN_PLAY);
     let (interference, left_out) = overlap::cut(&mut parts, pair.depth, tight);
     let drawn = [&placed.drawn[0][..], &placed.drawn[1]];
@@ -195,20 +206,6 @@ pub fn task(pair: &Pair, name: &str, like: Option<&Task>, size: Option<Size>) ->
         difference,
         closeup,
     }
-}
-
-/// Returns the parts of plug (0) and socket (1) that the other body can touch, and the worst deviation of either from
-/// its drawing.
-fn skins(placed: &AlignedPair, depth: f64) -> ([Vec<Part>; 2], Option<(usize, Deviation)>) {
-    let mated: Vec<Triangle> =
-        placed.plug.iter().map(|t| t.map(|p| p - Vector3::z() * depth)).collect();
-    let reach = Reach::new(&mated, &placed.socket, placed.play[0].max(placed.play[1]));
-    let ((plug, off), (socket, its)) = rayon::join(
-        || checked_skin("plug", &mated, |face, normal| reach.of_plug(face, normal)),
-        || checked_skin("socket", &placed.socket, |face, normal| reach.of_socket(face, normal)),
-    );
-    let up = |part: Part| Part { solid: raised(part.solid, depth), ..part };
-    ([plug.into_iter().map(up).collect(), socket], worst([off, its]))
 }
 
 /// Returns the parts for the faces that can be touched, and their deviations from the drawing.

@@ -73,7 +73,14 @@ impl Subject {
         let stiffness =
             designs.iter().map(stiffness).collect::<Result<Vec<_>, CalibrationError>>()?;
         let unit = designs.iter().map(|design| space.shares(design)).collect();
-        let places = standardised(&stiffness, of_space);
+        // Each column standardised by mean and standard deviation of the fingers of the space.
+        let scale = [0, 1].map(|axis| {
+            let moments =
+                Moments::of(stiffness.iter().take(of_space).map(|row: &[f64; 2]| row[axis]));
+            (moments.mean, moments.deviation().max(f64::MIN_POSITIVE))
+        });
+        let place = |row: &[f64; 2]| [0, 1].map(|axis| (row[axis] - scale[axis].0) / scale[axis].1);
+        let places = stiffness.iter().map(place).collect();
         let parameters = simulation.parameters.iter().copied().cloned().collect();
         Ok(Subject { task, designs, of_space, emulator, experiments, places, unit, parameters })
     }
@@ -211,13 +218,4 @@ pub fn completed(
         design.0.insert(key.to_string(), value);
     }
     Ok(design)
-}
-
-/// Standardises each column by mean and standard deviation of its first `reference` rows.
-fn standardised(rows: &[[f64; 2]], reference: usize) -> Vec<StiffnessPoint> {
-    let scale = [0, 1].map(|axis| {
-        let moments = Moments::of(rows.iter().take(reference).map(|row| row[axis]));
-        (moments.mean, moments.deviation().max(f64::MIN_POSITIVE))
-    });
-    rows.iter().map(|row| [0, 1].map(|axis| (row[axis] - scale[axis].0) / scale[axis].1)).collect()
 }

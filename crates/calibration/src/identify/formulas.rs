@@ -66,14 +66,6 @@ pub(super) fn explained(all: &[Curves]) -> f64 {
     (0..3).map(along).sum()
 }
 
-/// Subtracts the fitted straight line from a column: bias and drift of the sensor.
-fn detrended(column: DVector<f64>) -> DVector<f64> {
-    let middle = 0.5 * (column.len() as f64 - 1.0);
-    let times = DVector::from_fn(column.len(), |i, _| i as f64 - middle);
-    let (mean, slope) = (column.mean(), column.dot(&times) / times.norm_squared());
-    column.add_scalar(-mean) - times * slope
-}
-
 /// Normal equations of the flange along one axis for one attempt, with bias and drift removed.
 struct Sums {
     /// Products of the columns: lag, its rate, acceleration.
@@ -100,7 +92,12 @@ impl Sums {
         let behind: Vec<Vector3<f64>> = target.iter().zip(&tcp).map(|(to, at)| to - at).collect();
         let (rate, acceleration) = (rates(&behind, REACH), accelerations(&tcp, REACH));
         let column = |values: &[Vector3<f64>], from: usize, sign: f64| {
-            detrended(DVector::from_fn(count, |i, _| sign * values[i + from][axis]))
+            let column = DVector::from_fn(count, |i, _| sign * values[i + from][axis]);
+            // Without the fitted straight line: bias and drift of the sensor.
+            let middle = 0.5 * (column.len() as f64 - 1.0);
+            let times = DVector::from_fn(column.len(), |i, _| i as f64 - middle);
+            let (mean, slope) = (column.mean(), column.dot(&times) / times.norm_squared());
+            column.add_scalar(-mean) - times * slope
         };
         let columns = [(&behind, -1.0), (&rate, -1.0), (&acceleration, 1.0)];
         let columns = columns.map(|(values, sign)| column(values, 0, sign));

@@ -116,9 +116,18 @@ impl Identification<'_> {
         Ok(found)
     }
 
-    /// Returns the attempts to fit.
+    /// Returns the attempts to fit: at most [`MAX_ATTEMPTS`] of each finger with evenly spread starts, grouped by finger.
     fn attempts(&self) -> Vec<Logged> {
-        chosen(self.runs.iter().filter_map(Logged::new).collect())
+        let mut all: Vec<Logged> = self.runs.iter().filter_map(Logged::new).collect();
+        let key = |one: &Logged| one.design.labelled();
+        all.sort_by(|a, b| key(a).cmp(&key(b)).then(a.offset.total_cmp(&b.offset)));
+        let fingers = all.chunk_by(|a, b| a.design == b.design);
+        let of = |alike: &[Logged]| -> Vec<Logged> {
+            let count = alike.len().min(MAX_ATTEMPTS);
+            let place = |i: usize| if count > 1 { i * (alike.len() - 1) / (count - 1) } else { 0 };
+            (0..count).map(|i| alike[place(i)].clone()).collect()
+        };
+        fingers.flat_map(of).collect()
     }
 
     /// Returns the attempt to hold out for validation: of those not fitted, the one whose start is farthest from the
@@ -322,17 +331,4 @@ impl Identification<'_> {
         let each = attempts.into_iter().zip(before).zip(after);
         Ok(each.map(|((logged, before), after)| Compared { logged, before, after }).collect())
     }
-}
-
-/// Returns at most [`MAX_ATTEMPTS`] attempts of each finger with evenly spread starts, grouped by finger.
-fn chosen(mut all: Vec<Logged>) -> Vec<Logged> {
-    let key = |one: &Logged| one.design.labelled();
-    all.sort_by(|a, b| key(a).cmp(&key(b)).then(a.offset.total_cmp(&b.offset)));
-    let fingers = all.chunk_by(|a, b| a.design == b.design);
-    let of = |alike: &[Logged]| -> Vec<Logged> {
-        let count = alike.len().min(MAX_ATTEMPTS);
-        let place = |i: usize| if count > 1 { i * (alike.len() - 1) / (count - 1) } else { 0 };
-        (0..count).map(|i| alike[place(i)].clone()).collect()
-    };
-    fingers.flat_map(of).collect()
 }

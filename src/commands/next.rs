@@ -144,11 +144,6 @@ impl command::Request for Request {
     }
 }
 
-/// Returns an expected range and its interval as text.
-fn interval(expected_mm: f64, low_mm: f64, high_mm: f64) -> String {
-    format!("{expected_mm:.1} mm (80 %: {low_mm:.1} to {high_mm:.1})")
-}
-
 /// Returns a recommended print as text; `verb` is that of a finger that has to be printed.
 fn print(print: &Print, verb: &str, when: &str) -> String {
     let finger = design(&print.design);
@@ -164,7 +159,8 @@ fn print(print: &Print, verb: &str, when: &str) -> String {
         let percent = 100.0 * probability;
         format!("; {percent:.0} % likely to be wider than the best measured, else keep that")
     });
-    let expected = interval(print.expected_mm, print.low_mm, print.high_mm);
+    let Print { expected_mm, low_mm, high_mm, .. } = print;
+    let expected = format!("{expected_mm:.1} mm (80 %: {low_mm:.1} to {high_mm:.1})");
     format!(
         "{verb} {finger}{when}: {gain}{better}\n{printed}   expected {expected}: {}\n",
         print.reason

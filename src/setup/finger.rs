@@ -9,7 +9,6 @@ use input::wrong_unit;
 use insertion::finger::model::{CentreSource, RCC_KEY};
 use insertion::{
     DENSITY_KEY, DIRECTION_KEY, Design, Evaluator, FingerModelKind, Prediction, Priors, Scenario,
-    Task,
 };
 use parameters::numbers;
 use report::answer::lines;
@@ -108,7 +107,13 @@ impl FingerRequest {
     pub(crate) fn choose(&self, setup: &Setup) -> Result<ChosenFinger, Failure> {
         let chosen = self.choose_with(setup, &setup.evaluator)?;
         if !chosen.set.0.is_empty() {
-            check_units(&setup.only_task()?.task, &chosen.scenario.task)?;
+            let known = wrong_units(&setup.only_task()?.task);
+            let found = wrong_units(&chosen.scenario.task)
+                .into_iter()
+                .find(|problem| !known.contains(problem));
+            if let Some(Problem { key, problem, remedy }) = found {
+                return Err(Failure::usage(format!("--set: task.{key}: {problem}; {remedy}")));
+            }
         }
         Ok(chosen)
     }
@@ -130,7 +135,20 @@ impl FingerRequest {
                 design.0.insert(key.to_owned(), value);
             }
         }
-        let set = self.settings(setup)?;
+        let mut set = Design::default();
+        for (key, value) in &self.set {
+            if [DENSITY_KEY, DIRECTION_KEY].contains(&key.as_str()) {
+                return Err(Failure::usage(format!(
+                    "--set {key}: give the infill with --density and --direction"
+                )));
+            }
+            if setup.space.parameters.iter().any(|parameter| parameter.key == *key) {
+                check(setup, "--set", key, *value)?;
+            }
+            if set.0.insert(key.clone(), *value).is_some() {
+                return Err(Failure::usage(format!("--set {key}: given twice")));
+            }
+        }
         design.0.extend(set.0.clone());
         let stiffness = self.stiffness_compliance.zip(self.stiffness_assembly);
         let given = stiffness.is_some();
@@ -153,34 +171,6 @@ impl FingerRequest {
         let (cell, finger_model) = (evaluator.cell.clone(), evaluator.fingers.kind());
         Ok(ChosenFinger { scenario, cell, finger_model, design, set, given })
     }
-
-    /// Returns the settings of `--set`; values of keys of the space must lie within its bounds.
-    fn settings(&self, setup: &Setup) -> Result<Design, Failure> {
-        let mut set = Design::default();
-        for (key, value) in &self.set {
-            if [DENSITY_KEY, DIRECTION_KEY].contains(&key.as_str()) {
-                return Err(Failure::usage(format!(
-                    "--set {key}: give the infill with --density and --direction"
-                )));
-            }
-            if setup.space.parameters.iter().any(|parameter| parameter.key == *key) {
-                check(setup, "--set", key, *value)?;
-            }
-            if set.0.insert(key.clone(), *value).is_some() {
-                return Err(Failure::usage(format!("--set {key}: given twice")));
-            }
-        }
-        Ok(set)
-    }
-}
-
-/// Checks that no setting has changed a number of a task to one that is probably in a wrong unit.
-fn check_units(file: &Task, set: &Task) -> Result<(), Failure> {
-    let known = wrong_units(file);
-    let found = wrong_units(set).into_iter().find(|problem| !known.contains(problem));
-    found.map_or(Ok(()), |Problem { key, problem, remedy }| {
-        Err(Failure::usage(format!("--set: task.{key}: {problem}; {remedy}")))
-    })
 }
 
 /// Checks that a value lies within the bounds of its key in the space.

@@ -106,7 +106,14 @@ fn drafted(
     like: Option<&TaskFile>,
     stop: &AtomicBool,
 ) -> Result<(String, Option<Tuned>), Failure> {
-    let size = dimensions(request)?;
+    let (Some(plug), Some(clearance)) = (tip(request), request.clearance) else {
+        return Err(Failure::usage("give --plug, --round or --pins, with --clearance; or --like"));
+    };
+    let (clearance, pins) = (clearance * MM, pins(request));
+    let body = request.body.or(pins.map(|pins| pins.body()));
+    let (key, chamfer) = (request.key, request.chamfer_mm.map(|mm| mm * MM));
+    let round = request.round.is_some();
+    let size = Dimensions { plug, pins, round, clearance, key, chamfer, body };
     let task =
         draft::draft(&request.name, &size, like.map(|like| &like.task)).map_err(Failure::usage)?;
     let body = size.body.map_or(String::new(), |body| format!(" --body {}", text(&body)));
@@ -149,17 +156,6 @@ fn pins(request: &Request) -> Option<Pins> {
 /// Returns the size of the inserted part.
 fn tip(request: &Request) -> Option<Size> {
     request.plug.or(request.round).or(pins(request).map(|pins| pins.size()))
-}
-
-/// Returns the dimensions.
-fn dimensions(request: &Request) -> Result<Dimensions, Failure> {
-    let (Some(plug), Some(clearance)) = (tip(request), request.clearance) else {
-        return Err(Failure::usage("give --plug, --round or --pins, with --clearance; or --like"));
-    };
-    let (clearance, pins) = (clearance * MM, pins(request));
-    let body = request.body.or(pins.map(|pins| pins.body()));
-    let (key, chamfer) = (request.key, request.chamfer_mm.map(|mm| mm * MM));
-    Ok(Dimensions { plug, pins, round: request.round.is_some(), clearance, key, chamfer, body })
 }
 
 fn text(size: &Size) -> String {

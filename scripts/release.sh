@@ -5,7 +5,7 @@
 #
 #     finger_opt-VERSION-cp310-abi3-manylinux_2_28_x86_64.whl   for CPython 3.10 and later, glibc 2.28 and later
 #     finger_opt-VERSION.tar.gz                                 the sources from which the wheel can be built
-#     finger-opt-VERSION-x86_64-unknown-linux-musl.tar.gz       the static program, completions, manual page
+#     finger-opt-VERSION-x86_64-unknown-linux-musl.tar.gz       the static program, completions, commands
 #     SHA256SUMS
 #
 # Needs git, Rust with the target x86_64-unknown-linux-musl, a C compiler, Python with venv, and a package index
@@ -46,13 +46,13 @@ pack() { tar --sort=name --owner=0 --group=0 --numeric-owner --mtime="@$SOURCE_D
 cargo build --release --locked --bin optimize --target $static
 program=$target/$static/release/optimize
 folder=$scratch/$name-$static
-mkdir -p "$folder/completions" "$folder/man"
+mkdir -p "$folder/completions"
 cp "$program" LICENSE-APACHE LICENSE-MIT README.md CHANGELOG.md "$folder"
 # The bundled libraries; workspace crates are recognized by their folder.
 cargo tree --locked -p finger-opt -e normal --target $static --prefix none --format '{p}: {l} {r}' |
     sed '/(\/.*)/d; s/ (\*)$//' | sort -u > "$folder/LICENSES-OF-LIBRARIES"
 for shell in bash zsh fish; do "$program" completions $shell > "$folder/completions/optimize.$shell"; done
-"$program" man > "$folder/man/optimize.1"
+"$program" man > "$folder/COMMANDS.md"
 pack -C "$scratch" "$name-$static" > "dist/$name-$static.tar.gz"
 
 (cd python && PATH=$venv/bin:$PATH maturin build -q --release --locked --zig --compatibility manylinux_2_28 --out ../dist)

@@ -132,25 +132,33 @@ fn run(words: &[OsString]) -> Result<ExitCode, Failure> {
     }
 }
 
-/// Adds to the error of an unknown option the nearest one of `evaluate`, and names that command if another was given.
+/// Adds the right option to the error of an unknown one: `--direction` for an angle and, for a study, the nearest option
+/// of `evaluate`.
 fn with_tip(mut usage: clap::Error, program: &clap::Command, words: &[OsString]) -> clap::Error {
-    let (ErrorKind::UnknownArgument, Some(ContextValue::String(unknown))) =
-        (usage.kind(), usage.get(ContextKind::InvalidArg))
-    else {
+    let unknown = match usage.get(ContextKind::InvalidArg) {
+        Some(ContextValue::String(text)) => text.strip_prefix("--"),
+        _ => None,
+    };
+    let Some(unknown) = unknown.filter(|_| usage.kind() == ErrorKind::UnknownArgument) else {
         return usage;
     };
-    let own =
-        program.find_subcommand("evaluate").into_iter().flat_map(clap::Command::get_arguments);
-    let names: Vec<&str> = own.filter_map(clap::Arg::get_long).chain(["angle"]).collect();
-    let sure = |near: &&str| *near == "angle" || usage.get(ContextKind::SuggestedArg).is_none();
-    let near = nearest(unknown.trim_start_matches('-'), &names).filter(sure);
-    let Some(near) = near.map(|near| if near == "angle" { "direction" } else { near }) else {
-        return usage;
+    let command = command_of(program, words).1;
+    let has = |command: &clap::Command, name: &str| {
+        command.get_arguments().any(|argument| argument.get_long() == Some(name))
     };
-    let mut given = command_of(program, words).1.get_arguments();
-    if given.any(|arg| arg.get_long() == Some(near)) {
+    let is_study = command.get_name() == "study" || std::ptr::eq(command, program);
+    let evaluate = program.find_subcommand("evaluate").filter(|_| is_study);
+    let known = evaluate.into_iter().flat_map(clap::Command::get_arguments);
+    let known: Vec<&str> = known.filter_map(clap::Arg::get_long).collect();
+    let near = match unknown {
+        "angle" | "angel" => Some("direction"),
+        _ if usage.get(ContextKind::SuggestedArg).is_some() => None,
+        _ => nearest(unknown, &known),
+    };
+    let Some(near) = near else { return usage };
+    if has(command, near) {
         usage.insert(ContextKind::SuggestedArg, ContextValue::String(format!("--{near}")));
-    } else {
+    } else if is_study {
         usage.remove(ContextKind::SuggestedArg);
         let tip = format!("'--{near}' is an option of `optimize evaluate`");
         usage.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));

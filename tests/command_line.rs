@@ -131,7 +131,10 @@ fn a_force_that_the_connector_does_not_withstand_comes_first() {
         studies.study(name, 30, &["--task", &task, "--no-levers", "--no-map"]).succeeds().to_owned()
     };
     let weak = study("weak", 6.5);
-    assert!(weak.starts_with("force ") && weak.contains("its connector"), "{weak}");
+    assert!(
+        weak.starts_with("force ") && weak.contains("its connector\n              withstands 6 N"),
+        "{weak}"
+    );
     assert!(weak.contains("--constraint 'peak-force<=6'"), "{weak}");
     let answer =
         studies.study("weak", 30, &["--task", &studies.word("weak.toml"), "--json"]).json();
@@ -155,6 +158,15 @@ fn a_force_that_the_connector_does_not_withstand_comes_first() {
     let wide = studies.study("wide", 30, &more).json();
     let safe = &wide["answer"]["as_good"]["safe"];
     assert!(safe["peak_force_n"].as_f64() <= Some(8.25), "{safe}");
+    // A tied finger keeps to the limit, and is named in place of the best.
+    let near = study("near", 10.2);
+    assert!(near.starts_with("Best in simulation within the limit of force, "), "{near}");
+    let near = studies.study("near", 30, &["--task", &studies.word("near.toml"), "--json"]).json();
+    let (answer, left_out) = (&near["answer"], &near["answer"]["left_out"]);
+    assert!(answer["force"].is_null() && left_out["peak_force_n"].as_f64() > Some(10.2), "{near}");
+    assert_eq!(answer["finger"], near["recommended"]["values"]);
+    assert_ne!(answer["finger"], left_out["values"]);
+    assert!(studies.read("near/report.html").contains("Left out: "));
     let fast = studies.file("fast.toml", format!("{usb}\n[limits]\nspeed_mm_per_s = 5\n"));
     let fast = optimize(&["task", "check", &fast]);
     fast.fails(2, &["1 problem"]);

@@ -418,6 +418,7 @@ fn a_robot_without_whose_stop_the_start_inserts_is_the_verdict() {
     ran.fails(1, &["no design of the study inserts", "use a robot with higher limits"]);
     let error = &ran.stderr;
     let answer: serde_json::Value = serde_json::from_str(&ran.stdout).unwrap();
+    assert!(answer["recommended"].is_null(), "{answer}");
     let answer = &answer["answer"];
     assert_eq!(answer["verdict"], "robot_stops", "{answer}");
     assert!(answer["headline"].as_str().unwrap().starts_with("Not usable as it is: the robot"));

@@ -148,8 +148,8 @@ class Answer(Result):
 
     ``verdict`` is ``print`` (print ``finger``), ``any`` (print any of the ties), ``simulated`` (``finger`` is the best in
     simulation, or ties; no measurement supports it), ``measured_before`` (use a finger that was measured), ``choose``
-    (choose from a Pareto front), ``nothing_inserts``, ``none_feasible``, ``robot_stops`` (in most insertions) or
-    ``not_repeatable`` (repeats fail at the nominal start).
+    (choose from a Pareto front), ``nothing_inserts``, ``none_feasible``, ``robot_stops`` (in most insertions, or before
+    any) or ``not_repeatable`` (repeats fail at the nominal start).
     """
 
     verdict: Literal["print", "any", "simulated", "measured_before", "choose", "nothing_inserts", "none_feasible",

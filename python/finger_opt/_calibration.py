@@ -213,7 +213,7 @@ class Calibration(Result):
 
 
 def _tables(calibration: Calibration) -> str:
-    """Returns an HTML table of the five fingers with the largest predicted range, for each task."""
+    """Returns an HTML table of the best fingers, for each task."""
     pieces: list[str] = []
     for task in calibration.tasks:
         best = sorted(task.predictions, key=lambda finger: -finger.range_mm)[:5]

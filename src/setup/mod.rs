@@ -22,7 +22,7 @@ pub mod words;
 use crate::failure::{Failure, bad_config};
 use files::{Fingers, find, surrogate};
 use input::Place;
-use input::shipped::{Source, UNCERTAINTIES};
+use input::shipped::{ROBOTS, Source, UNCERTAINTIES};
 use insertion::evaluation::template::{printable, within_limits};
 use insertion::evaluation::uncertainty::Uncertainty;
 use insertion::{
@@ -48,7 +48,7 @@ pub struct Setup {
     pub inputs: Inputs,
     /// Paths of the task files, as given.
     pub task_files: Vec<String>,
-    /// Path of the robot file, as given.
+    /// Path of the user's own robot file, as given; else empty.
     pub robot_file: String,
 }
 
@@ -116,7 +116,9 @@ impl Setup {
             Evaluator { surrogate, fingers: finger_source, templates, robot, engine, cell: None };
         check_compatible(&evaluator, &space, &space_source.file)?;
         let task_files = tasks.iter().map(|task| task.file.clone()).collect();
-        let (uncertainty, measured, robot_file) = (None, None, robot_source.file.clone());
+        let (uncertainty, measured) = (None, None);
+        let shipped = ROBOTS.iter().any(|known| known.text == robot_source.text);
+        let robot_file = if shipped { String::new() } else { robot_source.file.clone() };
         Ok(Setup {
             inputs,
             evaluator,

@@ -1,7 +1,7 @@
 //! Recommendation and answer of a study as JSON.
 
 use insertion::{Measure, Objectives};
-use report::answer::{Answer, LeftOut, Ties, Trust, command, expectation, lines};
+use report::answer::{Answer, LeftOut, Ties, Trust, Verdict, command, expectation, lines};
 use serde_json::{Map, Value, json};
 use std::path::Path;
 use study::{BenchPrediction, ByRibs, StudyRecord};
@@ -55,7 +55,8 @@ pub(super) fn values(
 /// Returns the design recommended by simulation.
 fn simulated(answer: &Answer) -> Value {
     let found = answer.recommended.as_ref().filter(|_| answer.front.is_none());
-    let Some(found) = found.filter(|_| answer.verdict_key() != "nothing_inserts") else {
+    let inserts = !matches!(answer.verdict, Verdict::NothingInserts { .. });
+    let Some(found) = found.filter(|_| inserts) else {
         return Value::Null;
     };
     let [negative, positive] = [0, 1].map(|end| found.range_mm.map(|_| found.window_mm[end]));
@@ -160,7 +161,7 @@ fn left_out(answer: &Answer) -> Value {
     let (Some(left_out), Some((_, text))) = (&answer.left_out, lines::left_out(answer)) else {
         return Value::Null;
     };
-    let LeftOut { design, force } = left_out;
+    let LeftOut { design, force, .. } = left_out;
     json!({
         "values": design.design,
         "evaluation": design.index,

@@ -21,7 +21,7 @@ pub(crate) fn check(
     setup: &Setup,
     stop: &AtomicBool,
 ) -> Result<(), Failure> {
-    let Some((nearest, scenario, trial)) = nominal(record, setup, None, stop)? else {
+    let Some((nearest, scenario, trial)) = nominal(record, setup, true, stop)? else {
         return Ok(());
     };
     let class = outcome(trial.outcome) + stop_words(trial.robot_stopped);
@@ -55,23 +55,25 @@ pub(crate) fn robot_stop(
     setup: &Setup,
     stop: &AtomicBool,
 ) -> Result<Option<u64>, Failure> {
-    let found = nominal(record, setup, Some(f64::INFINITY), stop)?;
+    let found = nominal(record, setup, false, stop)?;
     let found = found.filter(|(.., trial)| trial.outcome == Outcome::Inserted);
     Ok(found.map(|(nearest, ..)| nearest.index))
 }
 
-/// Returns the design that is nearest to an insertion, if none inserts, with the trial at its nominal start, optionally
-/// of a robot with another stop force, N.
+/// Returns the design that is nearest to an insertion, if none inserts, with the trial at its nominal start, of a robot
+/// that `stops` at its limits or does not.
 fn nominal<'a>(
     record: &'a StudyRecord,
     Setup { evaluator, .. }: &Setup,
-    stop_force: Option<f64>,
+    stops: bool,
     stop: &AtomicBool,
 ) -> Result<Option<(&'a Recorded, Scenario, Trial)>, Failure> {
     let Some((task, nearest)) = record.unusable() else { return Ok(None) };
     let Some(template) = evaluator.templates.get(task) else { return Ok(None) };
     let mut scenario = evaluator.scenario(template, &nearest.design, nearest.stiffness)?;
-    scenario.robot.stop_force = stop_force.unwrap_or(scenario.robot.stop_force);
+    if !stops {
+        scenario.robot = scenario.robot.without_stops();
+    }
     let taught = nearest.on(task).and_then(|found| found.taught);
     let rig = evaluator.rig(&scenario, taught, 1.0)?;
     let trial = rig.grasp(Grasp { stop, ..Grasp::of(&scenario.finger) }).trial(0.0);

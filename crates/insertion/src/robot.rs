@@ -102,6 +102,15 @@ impl Robot {
         })
     }
 
+    /// Returns the robot without stop force and torque limits of its joints.
+    pub fn without_stops(mut self) -> Self {
+        self.stop_force = f64::INFINITY;
+        if let Drive::Arm(arm) = &mut self.drive {
+            arm.joints.iter_mut().for_each(|joint| joint.limit = f64::INFINITY);
+        }
+        self
+    }
+
     /// Returns the largest acceptable contact force, N: the smaller of the connector's limit, if it has one, and the
     /// acceptable share of the stop force.
     pub fn acceptable_force(&self, connector: Option<f64>) -> f64 {

@@ -135,7 +135,7 @@ fn data(answer: &Answer, model: Option<&impl Fn(&[f64]) -> (f64, f64)>, dir: &Pa
         "on": words::on(config, config.tasks().next().unwrap_or_default()),
         "best": best.map(|best| best.index),
         "command": command::trial(record, dir),
-        "model": model.and_then(|model| surface::of(record, model)),
+        "model": model.and_then(|model| surface::of(answer, model)),
     })
 }
 

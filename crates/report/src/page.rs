@@ -68,7 +68,7 @@ fn sections(answer: &Answer, files: &PageFiles) -> Result<Vec<Section>, ReportEr
         section("bench", "Predicted for the bench", bench::section(record)),
         section("set", set_title, ties::section(answer)),
         section("front", "Pareto front", front::section(answer, PLOT)?),
-        section("shape", "Beyond the infill", shape::section(record)),
+        section("shape", "Beyond the infill", shape::section(answer)),
         section("levers", "Sensitivity of the window", levers),
         section("maps", "Capture maps", maps),
         section("explore-views", "All designs", explore::section(answer, &files.dir)),

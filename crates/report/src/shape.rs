@@ -1,18 +1,20 @@
 //! Gain from the parameters of the finger's shape, in addition to the infill.
 
 use super::printer::finger_file;
+use crate::answer::Answer;
 use crate::answer::words::evaluated;
 use insertion::finger::file::is_shape;
 use insertion::{Evaluation, Measure, Variable};
 use maud::{Markup, html};
 use parameters::label;
-use study::{Recorded, StudyRecord};
+use study::Recorded;
 
 /// Returns the section; `None` if the space has no parameter of the finger's shape.
-pub(super) fn section(record: &StudyRecord) -> Option<Markup> {
+pub(super) fn section(answer: &Answer) -> Option<Markup> {
+    let record = answer.record;
     let parameters = &record.config.space.parameters;
     let shape: Vec<&Variable> = parameters.iter().filter(|p| is_shape(&p.key)).collect();
-    let index = record.recommended().filter(|_| !shape.is_empty())?.index;
+    let index = answer.recommended.as_ref().filter(|_| !shape.is_empty())?.design.index;
     // The evaluation of the search, because the designs in the comparison were not confirmed.
     let best = record.current().iter().find(|recorded| recorded.index == index)?;
     let file = finger_file(record)?;

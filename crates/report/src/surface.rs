@@ -1,6 +1,7 @@
 //! Model of the first objective over the space for the explorer: a Gaussian process fitted to the evaluations, like
 //! that of the optimizer `gp`.
 
+use crate::answer::Answer;
 use crate::answer::words::rounded;
 use ask_tell::gp::{FitEffort, Gp, fit};
 use ask_tell::statistics::{Moments, span};
@@ -46,12 +47,13 @@ pub(super) fn model(record: &StudyRecord) -> Option<impl Fn(&[f64]) -> (f64, f64
 /// Returns the model over the two most influential parameters as JSON: their indices (`axes`), grid values, and mean
 /// and standard deviation, row by row; the other parameters have their recommended values. `None` for a single
 /// parameter.
-pub(super) fn of(record: &StudyRecord, model: &impl Fn(&[f64]) -> (f64, f64)) -> Option<Value> {
-    let parameters = &record.config.space.parameters;
+pub(super) fn of(answer: &Answer, model: &impl Fn(&[f64]) -> (f64, f64)) -> Option<Value> {
+    let space = &answer.record.config.space;
+    let parameters = &space.parameters;
     if parameters.len() < 2 {
         return None;
     }
-    let base = record.config.space.shares(&record.recommended()?.design);
+    let base = space.shares(&answer.recommended.as_ref()?.design.design);
     let mut axes: Vec<usize> = (0..parameters.len()).collect();
     axes.sort_by(|&a, &b| {
         influence(model, &base, b).total_cmp(&influence(model, &base, a)).then(a.cmp(&b))

@@ -106,7 +106,7 @@ pub struct AnalysisSettings {
     /// Paths of the task files, as given, in the order of the tasks.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub task_files: Vec<String>,
-    /// Path of the robot file, as given.
+    /// Path of the user's own robot file, as given; else empty.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub robot_file: String,
     /// Project file and the options set by it, as text, if there is one.

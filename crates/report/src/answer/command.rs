@@ -53,8 +53,7 @@ impl InputArguments<'_> {
     fn own_setup(&self) -> Vec<String> {
         let own = &self.record.config.conclusion.robot_file;
         let copy = self.input("robot", ROBOTS);
-        let is_own = own.ends_with(".toml") && self.shipped("robot", ROBOTS).is_none();
-        let own = if is_own { shell_word(own) } else { copy.clone() };
+        let own = if own.ends_with(".toml") { shell_word(own) } else { copy.clone() };
         self.changed_setup().into_iter().map(|word| word.replace(&copy, &own)).collect()
     }
 

@@ -46,13 +46,16 @@ impl ExcessForce {
     /// than 90 % of the 150 N at which the robot ur5e stops`.
     pub fn words(&self, robot: &str) -> String {
         let ExcessForce { task, peak_force_n, limit_n, of_connector } = self;
-        let stop = format!("the {limit_n:.0} N at which the robot {robot} stops");
+        // Rounded to newtons, the force may equal the limit.
+        let digits = usize::from(peak_force_n.round() == limit_n.round());
+        let [peak, limit] = [peak_force_n, limit_n].map(|newtons| format!("{newtons:.digits$} N"));
+        let stop = format!("the {limit} at which the robot {robot} stops");
         let limit = match (of_connector, peak_force_n > limit_n) {
-            (true, _) => format!("its connector withstands {limit_n:.0} N (limits.force_n)"),
+            (true, _) => format!("its connector withstands {limit} (limits.force_n)"),
             (false, true) => format!("above {stop}"),
             (false, false) => format!("more than {:.0} % of {stop}", 100.0 * STOP_SHARE),
         };
-        format!("up to {peak_force_n:.0} N on {task} in the trials that insert: {limit}")
+        format!("up to {peak} on {task} in the trials that insert: {limit}")
     }
 }
 
@@ -67,6 +70,9 @@ mod tests {
             ExcessForce { task, peak_force_n, limit_n: 150.0, of_connector: false }.words("servo")
         };
         assert!(words(149.0).contains("149 N on usb in the trials that insert: more than 90 %"));
+        assert!(
+            words(150.4).contains("150.4 N on usb in the trials that insert: above the 150.0 N")
+        );
         assert!(words(155.4).contains("above the 150 N at which the robot servo stops"));
     }
 }

@@ -95,12 +95,12 @@ pub fn simulated(answer: &Answer, found: &Recommended) -> Vec<Line> {
 
 /// Returns the best design with its force and the limit, if a tied one is recommended in its place.
 pub fn left_out(answer: &Answer) -> Option<Line> {
-    let LeftOut { design, force } = answer.left_out.as_ref()?;
-    let record = answer.record;
-    let value = record.firm_values.get(&design.index).copied().or_else(|| design.value())?;
-    let value = record.config.objective.first().show(value);
-    let force = force.words(&record.config.robot);
-    Some(line("left out", format!("{}, {value}: {force}", words::design(&design.design))))
+    let LeftOut { design, force, gain } = answer.left_out.as_ref()?;
+    let config = &answer.record.config;
+    let more = format!(", {} more", config.objective.first().show(*gain));
+    let more = if *gain > 0.0 { &more } else { "" };
+    let force = force.words(&config.robot);
+    Some(line("left out", format!("{}{more}: {force}", words::design(&design.design))))
 }
 
 /// Returns the best design of the search with its value in the repeats (with varied friction, start and time step), if

@@ -41,6 +41,8 @@ pub struct LeftOut<'a> {
     pub design: &'a Recorded,
     /// Its contact force, which exceeds a limit.
     pub force: ExcessForce,
+    /// Its gain in the first objective over the recommended design, in its unit.
+    pub gain: f64,
 }
 
 /// Recommended design on one task.
@@ -90,8 +92,8 @@ impl<'a> Recommended<'a> {
         }
     }
 
-    /// Returns the safe choice in place of a design whose contact force exceeds a limit, and that design. Where any of the
-    /// ties will do, the safe choice is named already.
+    /// Returns the best tied design whose contact force is within the limits in place of one whose force exceeds them, and
+    /// the latter. If any of the ties is recommended, the safe choice is named already.
     pub(super) fn within_limits(
         self,
         record: &'a StudyRecord,
@@ -99,12 +101,12 @@ impl<'a> Recommended<'a> {
     ) -> (Self, Option<LeftOut<'a>>) {
         let applies = record.on_bench.is_none() && unsteady(record, self.design.index).is_none();
         let ties = self.ties.as_ref().filter(|ties| applies && !ties.any());
-        let safe = ties.and_then(|ties| ties.safe.as_ref());
-        match safe.zip(ExcessForce::of(record, &self.design.tasks())) {
-            Some((safe, force)) => {
-                let safe = Self::of(record, safe.design, measured);
-                let left_out = LeftOut { design: self.design, force };
-                (Recommended { ties: self.ties, ..safe }, Some(left_out))
+        let allowed = ties.and_then(|ties| ties.allowed);
+        match allowed.zip(ExcessForce::of(record, &self.design.tasks())) {
+            Some(((design, loss), force)) => {
+                let allowed = Self::of(record, design, measured);
+                let left_out = LeftOut { design: self.design, force, gain: loss };
+                (Recommended { ties: self.ties, ..allowed }, Some(left_out))
             }
             None => (self, None),
         }

@@ -9,12 +9,11 @@ use insertion::evaluation::objective::Measure;
 use parameters::label;
 use study::{Recorded, StudyRecord};
 
-/// Designs whose first objective is worse than that of the recommended design by at most the study's indifference (mm),
+/// Designs whose first objective is worse than that of the best design by at most the study's indifference (mm),
 /// or not at all if the objective is not a length.
 #[derive(Debug, Clone)]
 pub struct Ties<'a> {
-    /// Designs in the order of their evaluation, including the recommended design, each with its loss against that
-    /// design, in the unit of the first objective; negative if it is better.
+    /// Designs in the order of their evaluation, including the best design, each with its loss against that design, in the unit of the first objective; negative if it is better.
     pub designs: Vec<(&'a Recorded, f64)>,
     /// Values over these designs of each parameter of the space whose bounds differ.
     pub spread: Vec<Spread<'a>>,
@@ -28,6 +27,9 @@ pub struct Ties<'a> {
     pub share: f64,
     /// The safe choice; `None` if the recommended design has no ties, or all exceed a force limit.
     pub safe: Option<SafeChoice<'a>>,
+    /// The design of the smallest loss whose force connector and robot withstand and no repeat of which fails at the
+    /// nominal start, with its loss; `None` as for the safe choice.
+    pub allowed: Option<(&'a Recorded, f64)>,
 }
 
 /// Extent of the values of a parameter over a set of designs.
@@ -39,9 +41,8 @@ pub struct Spread<'a> {
     pub values: [f64; 2],
 }
 
-/// Safe choice: of the tied designs whose force connector and robot withstand and no repeat of which fails at the
-/// nominal start, the one with the widest range measured
-/// on a robot; if none was measured, the one with the least force.
+/// Safe choice: of the tied designs that are allowed ([`Ties::allowed`]), the one with the widest range measured on a
+/// robot; if none was measured, the one with the least force.
 #[derive(Debug, Clone)]
 pub struct SafeChoice<'a> {
     /// Design.
@@ -50,7 +51,7 @@ pub struct SafeChoice<'a> {
     pub measured_mm: Option<f64>,
     /// Its largest contact force, N, if any trial inserted.
     pub force_n: Option<f64>,
-    /// Its loss against the recommended design, in the unit of the first objective, rounded to 0.1; not negative.
+    /// Its loss against the best design, in the unit of the first objective, rounded to 0.1; not negative.
     pub loss: f64,
 }
 
@@ -105,6 +106,7 @@ impl<'a> Ties<'a> {
             loss: (10.0 * loss.max(0.0)).round() / 10.0,
         };
         let eligible = || tied.iter().filter(allowed).map(safe);
+        let allowed = tied.iter().filter(allowed).min_by(|a, b| a.1.total_cmp(&b.1)).copied();
         let measured = eligible().filter_map(|safe| Some((safe.measured_mm?, safe)));
         // Reversed, since `max_by` returns the last of equal maxima, and the first evaluated is wanted.
         let widest = measured.rev().max_by(|a, b| a.0.total_cmp(&b.0));
@@ -113,7 +115,7 @@ impl<'a> Ties<'a> {
         let safe = widest.or(least_force).map(|(_, safe)| safe);
         let (spread, share) = (spread(record, &designs), share(record, &designs));
         let loss_within = loss_within(&spread, &others);
-        Ties { spread, loss_within, narrow, share, safe, designs }
+        Ties { spread, loss_within, narrow, share, safe, allowed, designs }
     }
 }
 
@@ -236,9 +238,16 @@ mod tests {
         assert_eq!(named(&record), (4, None, false));
         record.limits.connectors = vec![Some(9.0)];
         assert_eq!(named(&record), (9, Some(4), false));
+        // Also if another loses more and has less force.
+        record.evaluations[0].tasks[0].peak_force_n = 8.0;
+        assert_eq!(named(&record), (9, Some(4), false));
+        assert_eq!(
+            Answer::of(&record).recommended.unwrap().ties.unwrap().safe.unwrap().design.index,
+            0
+        );
         let (_, text) = lines::left_out(&Answer::of(&record)).unwrap();
         assert!(
-            text.contains("6°, 6.7 mm: up to 10 N on usb in the trials that insert: its connector withstands 9 N"),
+            text.contains("6°, 0.6 mm more: up to 10 N on usb in the trials that insert: its connector withstands 9 N"),
             "{text}"
         );
         // No tied finger is gentle enough.

@@ -78,31 +78,7 @@ pub fn mated(
 ) -> Result<MatedTask, Failure> {
     let triangles = parts.triangles.each_ref().map(Vec::as_slice);
     let (unit, why) = unit(files, triangles, parts.unit)?;
-    // Plug and socket of separate files must not be in different units. In millimetres, or in a unit that was not guessed,
-    // they may be, since a small plug can enter a large housing: a note then asks.
-    let sides = triangles.map(|of| {
-        let mut sides = [0, 1, 2].map(|axis| width(extent(of.iter().flatten(), axis)));
-        sides.sort_by(f64::total_cmp);
-        sides
-    });
-    let ratios = |[large, small]: [usize; 2]| {
-        let mut ratios = [0, 1, 2].map(|i| sides[large][i] / sides[small][i]);
-        ratios.sort_by(f64::total_cmp);
-        ratios.iter().all(|ratio| *ratio > MAX_RATIO).then_some((large, small, ratios))
-    };
-    let larger = [[0, 1], [1, 0]].into_iter().filter(|_| files[0] != files[1]).find_map(ratios);
-    if let Some((large, small, [least, _, most])) = larger {
-        let (large, small) = (BODIES[large], BODIES[small]);
-        let found = format!(
-            "every side of the {large} is {least:.0} to {most:.0} times that of the {small}"
-        );
-        if unit != Unit::Mm && why.is_some() {
-            let problem =
-                format!("{found}; export both in one unit, or name it with --unit if they are");
-            return Err(Failure::in_file(names(files), problem));
-        }
-        context.note(&format!("{found}: are both in one unit?"));
-    }
+    check_sizes(files, triangles, unit != Unit::Mm && why.is_some(), context)?;
     let mut findings: Vec<(&str, String)> = why.map(|why| ("unit", why)).into_iter().collect();
     let drawn: [Vec<Triangle>; 2] =
         triangles.map(|of| of.iter().map(|t| t.map(|p| p * unit.metres())).collect());
@@ -358,6 +334,41 @@ pub fn unit(
         why += &format!("; in {}, {plug:.1} and {socket:.1} mm", value(other));
     }
     Ok((unit, Some(why)))
+}
+
+/// Checks that plug and socket of separate files are not in different units. In millimetres, or in a unit that was not
+/// guessed, they may be, since a small plug can enter a large housing: a note then asks.
+///
+/// # Errors
+/// If one has [`MAX_RATIO`] times the size of the other in a guessed unit.
+fn check_sizes(
+    files: Files,
+    triangles: [&[Triangle]; 2],
+    guessed: bool,
+    context: &Context<'_>,
+) -> Result<(), Failure> {
+    let sides = triangles.map(|of| {
+        let mut sides = [0, 1, 2].map(|axis| width(extent(of.iter().flatten(), axis)));
+        sides.sort_by(f64::total_cmp);
+        sides
+    });
+    let ratios = |[large, small]: [usize; 2]| {
+        let mut ratios = [0, 1, 2].map(|i| sides[large][i] / sides[small][i]);
+        ratios.sort_by(f64::total_cmp);
+        ratios.iter().all(|ratio| *ratio > MAX_RATIO).then_some((large, small, ratios))
+    };
+    let larger = [[0, 1], [1, 0]].into_iter().filter(|_| files[0] != files[1]).find_map(ratios);
+    let Some((large, small, [least, _, most])) = larger else { return Ok(()) };
+    let (large, small) = (BODIES[large], BODIES[small]);
+    let found =
+        format!("every side of the {large} is {least:.0} to {most:.0} times that of the {small}");
+    if guessed {
+        let problem =
+            format!("{found}; export both in one unit, or name it with --unit if they are");
+        return Err(Failure::in_file(names(files), problem));
+    }
+    context.note(&format!("{found}: are both in one unit?"));
+    Ok(())
 }
 
 /// Returns the triangles of a mesh, m, with outward normals and reduced if the mesh is large and closed; and whether

@@ -126,16 +126,15 @@ impl<'a> Document<'a> {
 
     /// Returns the document with an accepted word in place of an unknown one; `None` for another error.
     fn with_word<T: DeserializeOwned>(&self, error: &Error) -> Option<Repaired<'a>> {
-        let (message, at) = (error.message(), error.span()?);
-        let words = message.starts_with(UNKNOWN_WORD).then(|| quoted(message))?;
-        let word = (*words.get(1)?).to_owned();
-        self.changed::<T>(|value| {
-            let found = value.span() == at && matches!(value.get_ref(), DeValue::String(_));
-            if found {
-                *value.get_mut() = DeValue::String(Cow::Owned(word.clone()));
+        let (words, at) = (error.message().strip_prefix(UNKNOWN_WORD)?, error.span()?);
+        let word = words.split('`').nth(2)?;
+        let change = |value: &mut Spanned<DeValue<'a>>| match value.span() == at {
+            true => {
+                std::mem::replace(value.get_mut(), DeValue::String(word.to_owned().into())).is_str()
             }
-            found
-        })
+            false => false,
+        };
+        self.changed::<T>(change)
     }
 
     /// Returns the document with any accepted value for a missing key; `None` if none is accepted.

@@ -1,6 +1,6 @@
 //! Choice of a strategy among those that were tried.
 
-use super::{Candidate, Tuned};
+use super::{Step, Tuned};
 use insertion::evaluation::INDIFFERENCE_MM;
 
 /// Smallest share by which the peak force of a gentler strategy is smaller.
@@ -10,40 +10,35 @@ impl Tuned {
     /// Returns index and range, mm, of the steps that insert; without the given start, if the taught one is centred in an
     /// equally wide window.
     pub(super) fn inserting(&self) -> Vec<(usize, f64)> {
-        let centred = |given: &Candidate, taught: &Candidate| {
-            taught.inserts()
-                && taught.side_mm() >= given.side_mm() + INDIFFERENCE_MM
-                && taught.score >= given.score - INDIFFERENCE_MM
-        };
-        let skipped = match &self.steps[..] {
-            [given, taught, ..] => usize::from(centred(&given.tried, &taught.tried)),
-            _ => 0,
-        };
-        let steps = self.steps.iter().enumerate().skip(skipped);
+        let centred = self.steps.get(1).is_some_and(|Step { tried, .. }| {
+            let given = &self.steps[0].tried;
+            tried.inserts()
+                && tried.side_mm() >= given.side_mm() + INDIFFERENCE_MM
+                && tried.score >= given.score - INDIFFERENCE_MM
+        });
+        let steps = self.steps.iter().enumerate().skip(usize::from(centred));
         let steps = steps.filter(|(_, step)| step.tried.inserts());
         steps.map(|(place, step)| (place, step.tried.score)).collect()
     }
 
     /// Returns the recommended one of steps, given by index and range, mm: of those that are narrower than the widest by
-    /// less than [`INDIFFERENCE_MM`], the one with the smallest force. If forces differ by less than [`GENTLER`], an
-    /// earlier stage and a larger range come first.
+    /// less than [`INDIFFERENCE_MM`], the one with the smallest force. If forces differ by less than [`GENTLER`], the first
+    /// of the earliest stage.
     pub(super) fn recommended(&self, ranges: &[(usize, f64)]) -> Option<usize> {
         let widest = ranges.iter().map(|(_, mm)| *mm).fold(f64::NEG_INFINITY, f64::max);
         // Ranges are multiples of 0.1 mm, with rounding errors.
         let tied = || ranges.iter().filter(|(_, mm)| widest - mm < INDIFFERENCE_MM - 1e-9);
         let force = |place: usize| self.steps[place].tried.force_n;
         let least = tied().map(|(place, _)| force(*place)).fold(f64::INFINITY, f64::min);
-        let gentle = tied().filter(|(place, _)| force(*place) * (1.0 - GENTLER) <= least);
-        let first = gentle.min_by(|(a, a_mm), (b, b_mm)| {
-            self.steps[*a].stage.cmp(&self.steps[*b].stage).then(b_mm.total_cmp(a_mm))
-        });
-        first.map(|(place, _)| *place)
+        let gentle = tied().map(|(place, _)| *place);
+        let gentle = gentle.filter(|place| force(*place) * (1.0 - GENTLER) <= least);
+        gentle.min_by_key(|place| self.steps[*place].stage)
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Stage, Step};
+    use super::super::{Candidate, Stage};
     use super::*;
     use input::shipped::TASKS;
     use insertion::task::Task;
@@ -70,7 +65,7 @@ mod tests {
             assert_eq!(recommended(&[gentle, wider]), Some(0));
         }
         assert_eq!(recommended(&[gentle, (search, 5.3, 98.0)]), Some(1), "0.3 mm wider");
-        // About as gentle: the earlier stage, then the wider one.
+        // About as gentle: the earlier stage, then the first.
         assert_eq!(recommended(&[(search, 5.2, 76.0), gentle]), Some(1));
         assert_eq!(recommended(&[(families, 5.1, 82.0), gentle]), Some(0));
         assert_eq!(recommended(&[(given, -0.1, 160.0)]), None, "it does not insert");

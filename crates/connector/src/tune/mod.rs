@@ -234,25 +234,20 @@ impl Tuned {
     /// Recommends a strategy by its range under a turned socket, and measures it under all changes.
     fn check(&mut self, tuner: &Tuner) -> Result<(), DesignError> {
         let mut order = self.inserting();
-        let earlier: Vec<_> =
-            order.iter().filter(|(at, _)| self.steps[*at].stage < Stage::Search).copied().collect();
         // The best strategy of the earlier stages comes first.
-        let earlier = self.recommended(&earlier);
+        let earlier = order.iter().filter(|(at, _)| self.steps[*at].stage < Stage::Search);
+        let earlier = self.recommended(&earlier.copied().collect::<Vec<_>>());
         order.sort_by(|a, b| b.1.total_cmp(&a.1));
         order.sort_by_key(|(place, _)| Some(*place) != earlier);
-        let (mut count, mut checked, mut failed) = (0, Vec::new(), Vec::new());
+        let (mut checked, mut failed) = (Vec::new(), Vec::new());
         for (place, range_mm) in order {
             let strategy = &self.steps[place].tried.strategy;
             let with_tilt = failed.iter().filter(|&&tilt| tilt == strategy.tilt).count();
             let with = [&checked[..], &[(place, range_mm)]].concat();
-            let changes = self.recommended(&with) != self.recommended(&checked);
-            if !changes || with_tilt == MAX_FAILED {
+            let full = checked.len() + failed.len() == FINALISTS || with_tilt == MAX_FAILED;
+            if full || self.recommended(&with) == self.recommended(&checked) {
                 continue;
             }
-            if count == FINALISTS {
-                break;
-            }
-            count += 1;
             let turned = robustness(tuner, strategy, &tuner.others[1..2], TURNED)?;
             if tuner.stopped() {
                 return Ok(());

@@ -16,10 +16,8 @@ use calibration::next::BestMeasured;
 use calibration::rank_correlation::{Order, RankCorrelation, errors_percent, rank_correlation};
 use input::shipped::{ROBOTS, STIFFNESS, Shipped, TASKS};
 use insertion::{Design, Evaluation, Measure};
-use study::{
-    BenchPrediction, CELL, FINGER, Recorded, StudyConfig, StudyRecord, Volume, Walked, sha256_hex,
-    volume,
-};
+use study::{BenchPrediction, CELL, FINGER, Recorded, StudyConfig, StudyRecord, Volume, Walked};
+use study::{sha256_hex, volume};
 
 pub use force::ExcessForce;
 use recommended::firm_range_mm;

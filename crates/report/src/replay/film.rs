@@ -2,12 +2,12 @@
 
 use super::Film;
 use crate::answer::words::rounded;
-use contact::scene::{Geom, Pose, Shape};
+use contact::scene::{Geom, Pose};
 use contact::{ContactPoint, shapes};
 use input::units::MM;
 use insertion::Part;
 use insertion::outcome::stop_words;
-use insertion::task::Plug;
+use insertion::task::{Plug, Solid};
 use insertion::trial::record::Frame;
 use nalgebra::Vector3;
 use serde_json::{Value, json};
@@ -41,23 +41,19 @@ fn bodies(film: &Film) -> [(&'static str, &'static str, Vec<Geom>); 8] {
 /// Returns boxes that fill the gaps along z between the parts of a plug: an imported plug has no parts where the socket
 /// cannot touch it.
 fn links(plug: &Plug) -> Vec<Geom> {
-    let join = |[a, b]: [Vector3<f64>; 2], [c, d]: [Vector3<f64>; 2]| [a.inf(&c), b.sup(&d)];
-    let joined = |bounds: &mut dyn Iterator<Item = [Vector3<f64>; 2]>| {
-        bounds.reduce(join).unwrap_or_default()
-    };
-    let bounds = |part: &Part| joined(&mut part.solid.corners().iter().map(|p| [p.coords; 2]));
-    let mut parts: Vec<_> = plug.rigid().map(bounds).collect();
+    type Bounds = [Vector3<f64>; 2];
+    let join = |[a, b]: Bounds, [c, d]: Bounds| [a.inf(&c), b.sup(&d)];
+    let bounds = |part: &Part| part.solid.corners().iter().map(|p| [p.coords; 2]).reduce(join);
+    let mut parts: Vec<Bounds> = plug.rigid().filter_map(bounds).collect();
     parts.sort_by(|[a, _], [b, _]| a.z.total_cmp(&b.z));
     let link = |at: usize| {
-        let (below, above) = parts.split_at(at);
-        let [[a, b], [c, d]] = [below, above].map(|body| joined(&mut body.iter().copied()));
+        let [a, b] = parts[..at].iter().copied().reduce(join)?;
+        let [c, d] = parts[at..].iter().copied().reduce(join)?;
         // The intersection of both in x and y, and the gap between them along z.
-        let (min, max) = (a.sup(&c), b.inf(&d));
-        let (min, max) = (min.xy().push(max.z), max.xy().push(min.z));
-        let shape = Shape::Box { half: (max - min) / 2.0 };
-        let pose = Pose::from_parts(((max + min) / 2.0).into(), nalgebra::one());
-        let geom = Geom { name: String::new(), shape, pose, friction: None };
-        (max - min).iter().all(|size| *size > GAP).then_some(geom)
+        let (low, high) = (a.sup(&c), b.inf(&d));
+        let (min, max) = (low.xy().push(high.z), high.xy().push(low.z));
+        let part = Part { name: String::new(), solid: Solid::Box { min, max }, friction: None };
+        (max - min).iter().all(|size| *size > GAP).then(|| part.geom())
     };
     (1..parts.len()).filter_map(link).collect()
 }

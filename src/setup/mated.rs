@@ -26,8 +26,6 @@ const MAX_SHOWN: usize = 4;
 const MIN_NOSE_MM: f64 = 0.5;
 /// Ratio of the lengths of all three sides above which two files are probably in different units.
 const MAX_RATIO: f64 = 5.0;
-/// Ratio of the shortest side of a body to its longest one up to which the body is flat.
-const FLAT: f64 = 1e-6;
 /// Names of the bodies of an [`Interference`] or a deviation.
 const BODIES: [&str; 2] = ["plug", "socket"];
 
@@ -354,7 +352,7 @@ fn check_sizes(
         sides.sort_by(f64::total_cmp);
         sides
     });
-    if let Some(flat) = sides.iter().position(|[least, _, most]| *least <= FLAT * most) {
+    if let Some(flat) = sides.iter().position(|[least, ..]| *least <= 0.0) {
         let problem = format!("the {} is flat; export a solid", BODIES[flat]);
         return Err(Failure::in_file(files[flat], problem));
     }

@@ -3,6 +3,7 @@
 use crate::{Document, InputError, Place, shipped};
 use serde::de::DeserializeOwned;
 use std::borrow::Cow;
+use std::mem::replace;
 use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeArray, DeInteger, DeTable, DeValue, Error, ValueDeserializer};
@@ -128,13 +129,8 @@ impl<'a> Document<'a> {
     fn with_word<T: DeserializeOwned>(&self, error: &Error) -> Option<Repaired<'a>> {
         let (words, at) = (error.message().strip_prefix(UNKNOWN_WORD)?, error.span()?);
         let word = words.split('`').nth(2)?;
-        let change = |value: &mut Spanned<DeValue<'a>>| match value.span() == at {
-            true => {
-                std::mem::replace(value.get_mut(), DeValue::String(word.to_owned().into())).is_str()
-            }
-            false => false,
-        };
-        self.changed::<T>(change)
+        let new = || DeValue::String(word.to_owned().into());
+        self.changed::<T>(|value| value.span() == at && replace(value.get_mut(), new()).is_str())
     }
 
     /// Returns the document with any accepted value for a missing key; `None` if none is accepted.

@@ -150,4 +150,7 @@ fn each_draw_under_a_cell_is_another_cell() {
     let bands = optimize_line(&repeats).json()["bands"].take();
     assert!((1..12).contains(&bands["impossible_draws"].as_u64().unwrap()), "{bands}");
     optimize_line(&repeats.replace(" --json", "")).says(&["impossible on this task"]);
+    let trial = repeats.replace("evaluate", "trial");
+    assert_eq!(optimize_line(&trial).json()["impossible_draws"], bands["impossible_draws"]);
+    optimize_line(&trial.replace(" --json", "")).says(&["impossible on this task"]);
 }

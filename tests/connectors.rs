@@ -312,6 +312,9 @@ fn unit_and_axis_of_the_jaws_are_as_requested() {
     let mixed = ["task", "import", "--plug", &plug, "--socket", &in_mm];
     let sizes = "every side of the socket is 9 to 17 times that of the plug";
     optimize(&mixed).fails(2, &[sizes, "export both in one unit"]);
+    let flat = folder.file("flat.stl", stl(&[block([0.0, 0.3], [0.0, 0.3], [0.0; 2])], [0, 1, 2]));
+    let flat = ["task", "import", "--plug", &flat, "--socket", &in_mm];
+    optimize(&flat).fails(2, &["flat.stl: the plug is flat; export a solid"]);
 }
 
 /// The boot is in the way across the first axis.

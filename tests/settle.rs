@@ -168,6 +168,9 @@ fn what_cannot_settle_has_a_budget() {
     let unconfirmed = answer(&run(&mut settling(&folder, "unconfirmed", &["--no-confirm"])));
     assert_eq!(unconfirmed["settled"], true);
     assert!(unconfirmed.get("walked").is_none());
+    assert_eq!(confirmed(&folder, "unconfirmed")["designs"].as_array().map(Vec::len), Some(0));
+    assert!(folder.read("unconfirmed/study.toml").contains("no_confirm = true"));
+    assert!(folder.read("unconfirmed/report.html").contains(", not confirmed; "));
     let asynchronous = answer(&run(&mut settling(&folder, "async", &["--async"])));
     assert_eq!(asynchronous["settled"], true);
     let again = answer(&run(&mut settling(&folder, "async", &["--async"])));

@@ -425,6 +425,7 @@ fn a_robot_without_whose_stop_the_start_inserts_is_the_verdict() {
     assert!(!error.contains("--start taught") && !error.contains("the plug misses"), "{error}");
     let page = studies.read("s/report.html");
     assert!(page.contains("<h1>Not usable as it is: the robot stops in 1 of 1 trials"));
+    assert!(page.contains("robot with higher limits") && !page.contains("the plug misses"));
 }
 
 #[test]

@@ -336,11 +336,11 @@ pub fn unit(
     Ok((unit, Some(why)))
 }
 
-/// Checks that plug and socket of separate files are not in different units. In millimetres, or in a unit that was not
+/// Checks that neither body is flat, and that plug and socket of separate files are not in different units. In millimetres, or in a unit that was not
 /// guessed, they may be, since a small plug can enter a large housing: a note then asks.
 ///
 /// # Errors
-/// If one has [`MAX_RATIO`] times the size of the other in a guessed unit.
+/// If one is flat, or has [`MAX_RATIO`] times the size of the other in a guessed unit.
 fn check_sizes(
     files: Files,
     triangles: [&[Triangle]; 2],
@@ -352,6 +352,10 @@ fn check_sizes(
         sides.sort_by(f64::total_cmp);
         sides
     });
+    if let Some(flat) = sides.iter().position(|[least, ..]| *least <= 0.0) {
+        let problem = format!("the {} is flat; export a solid", BODIES[flat]);
+        return Err(Failure::in_file(files[flat], problem));
+    }
     let ratios = |[large, small]: [usize; 2]| {
         let mut ratios = [0, 1, 2].map(|i| sides[large][i] / sides[small][i]);
         ratios.sort_by(f64::total_cmp);

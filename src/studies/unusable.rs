@@ -1,7 +1,7 @@
 //! Diagnosis of a study in which no design inserts at the nominal start.
 
 use crate::{Failure, Setup, not_stopped};
-use insertion::outcome::{STOP_REMEDY, stop_words};
+use insertion::outcome::stop_words;
 use insertion::trial::{Trial, picture};
 use insertion::{Grasp, Outcome, Scenario, StartRule};
 use report::answer::words::{outcome, remedy};
@@ -35,8 +35,7 @@ pub(crate) fn check(
         StartRule::Given if !by_robot => ". `--start taught` moves it to where the finger inserts",
         _ => "",
     };
-    let remedy = remedy(trial.outcome, trial.robot_stopped);
-    let remedy = if by_robot { STOP_REMEDY } else { &remedy };
+    let remedy = remedy(trial.outcome, trial.robot_stopped, by_robot);
     let file = file.display();
     Err(Failure::running(format!(
         "no design of the study inserts at the nominal start of {}: evaluation {} ends with {class}{phase}, \

@@ -1,8 +1,9 @@
-//! Faults of the structure of a TOML file: unknown and missing keys, and the first value of another type or name.
+//! Faults of the structure of a TOML file: unknown and missing keys, unknown words, and the first value of another type.
 
 use crate::{Document, InputError, Place, shipped};
 use serde::de::DeserializeOwned;
 use std::borrow::Cow;
+use std::mem::replace;
 use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeArray, DeInteger, DeTable, DeValue, Error, ValueDeserializer};
@@ -15,6 +16,7 @@ const MAX_LENGTH: usize = 16 << 10;
 const PLACEHOLDER: Range<usize> = usize::MAX..usize::MAX;
 const UNKNOWN: &str = "unknown field `";
 const MISSING: &str = "missing field `";
+const UNKNOWN_WORD: &str = "unknown variant `";
 
 /// Returns the error of a file with invalid TOML or an unexpected structure; `text` is that of the file, empty for a
 /// table without a text.
@@ -49,7 +51,7 @@ fn fault(file: &str, text: &str, mut error: Error, near: Option<&str>) -> InputE
 
 /// Returns the word nearest to the unknown key or word of a parser's message, of the accepted words and `more` words.
 fn nearest_key<'a>(message: &'a str, more: &[&'a str]) -> Option<&'a str> {
-    [UNKNOWN, "unknown variant `"].into_iter().find(|begin| message.starts_with(begin))?;
+    [UNKNOWN, UNKNOWN_WORD].into_iter().find(|begin| message.starts_with(begin))?;
     let words = quoted(message);
     let (given, accepted) = words.split_first()?;
     shipped::nearest(given, &[accepted, more].concat())
@@ -70,8 +72,8 @@ type Repaired<'a> = (Document<'a>, Option<Error>);
 
 impl<'a> Document<'a> {
     /// Returns the faults of a document of which `error` is the first one, as one error: in the order of the file,
-    /// missing keys last, [`MAX_FAULTS`] at most. Unknown and missing keys are repaired in the tree to find the next
-    /// fault.
+    /// missing keys last, [`MAX_FAULTS`] at most. Unknown and missing keys and unknown words are repaired in the tree
+    /// to find the next fault.
     pub(crate) fn faults<T: DeserializeOwned>(mut self, error: Error) -> InputError {
         let (mut found, mut next) = (Vec::new(), Some(error));
         let most = if self.text.len() > MAX_LENGTH { 1 } else { MAX_FAULTS };
@@ -101,7 +103,7 @@ impl<'a> Document<'a> {
         let message = error.message();
         if !message.starts_with(UNKNOWN) {
             let near = nearest_key(message, &[]).map(str::to_owned);
-            return (near, self.with_missing::<T>(error));
+            return (near, self.with_word::<T>(error).or_else(|| self.with_missing::<T>(error)));
         }
         let renamed = |name: Option<&str>| {
             let at = error.span()?;
@@ -121,6 +123,14 @@ impl<'a> Document<'a> {
         let name = near.as_deref().filter(|near| !self.taken.contains(near));
         let repaired = if name.is_some() { renamed(name) } else { removed };
         (near, repaired)
+    }
+
+    /// Returns the document with an accepted word in place of an unknown one; `None` for another error.
+    fn with_word<T: DeserializeOwned>(&self, error: &Error) -> Option<Repaired<'a>> {
+        let (words, at) = (error.message().strip_prefix(UNKNOWN_WORD)?, error.span()?);
+        let word = words.split('`').nth(2)?;
+        let new = || DeValue::String(word.to_owned().into());
+        self.changed::<T>(|value| value.span() == at && replace(value.get_mut(), new()).is_str())
     }
 
     /// Returns the document with any accepted value for a missing key; `None` if none is accepted.

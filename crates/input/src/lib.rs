@@ -321,6 +321,38 @@ mod tests {
     }
 
     #[test]
+    fn the_faults_after_an_unknown_word_are_listed() {
+        #[derive(Debug, serde::Deserialize)]
+        #[serde(rename_all = "kebab-case")]
+        enum Motion {
+            Touch,
+            Duration,
+        }
+        #[derive(Debug, serde::Deserialize)]
+        #[serde(deny_unknown_fields)]
+        #[expect(dead_code, reason = "only the names are read")]
+        struct Phase {
+            motion: Motion,
+            speed: f64,
+        }
+        #[derive(Debug, serde::Deserialize)]
+        #[expect(dead_code, reason = "only its names are read")]
+        struct Strategy {
+            phase: Vec<Phase>,
+        }
+        let text =
+            "[[phase]]\nmotion = \"tuch\"\nsped = 1\n[[phase]]\nmotion = \"x\"\nspeed = \"1\"";
+        let text = read::<Strategy>(text, "t.toml").unwrap_err().to_string();
+        let faults =
+            ["unknown variant `tuch`", "unknown field `phase.sped`", "unknown variant `x`"];
+        let faults = [&faults[..], &["invalid type: string \"1\""]].concat();
+        let at: Vec<_> = faults.iter().map(|fault| text.find(fault)).collect();
+        assert!(at.is_sorted() && !at.contains(&None), "{text}");
+        let accepted = [Motion::Touch, Motion::Duration].map(|of| format!("{of:?}").to_lowercase());
+        assert!(accepted.iter().all(|word| text.contains(word)), "{text}");
+    }
+
+    #[test]
     fn a_table_without_a_text_is_reported_by_key_and_value() {
         let error = |text: &str| {
             let table: toml::Table = text.parse().unwrap();

@@ -38,7 +38,7 @@ pub(super) fn screen(answer: &Answer, files: &PageFiles) -> Markup {
         }
         div.first {
             @if let Verdict::NothingInserts { nearest, fails, .. } = &answer.verdict {
-                (nominal(nearest, *fails, files))
+                (nominal(nearest, fails.map(|fails| (fails, answer.stopped().is_some())), files))
             } @else if let Some((_, tasks)) = answer.finger_and_evaluations() { (films(answer, &tasks, files)) }
             div {
                 (bar::section(answer, &files.analyses.robots).unwrap_or_default())
@@ -85,14 +85,15 @@ fn drawing_and_files(answer: &Answer, files: &PageFiles) -> Option<Markup> {
     })
 }
 
-/// Returns the outcome of the design that is nearest to inserting, advice, and a drawing of its nominal start.
-fn nominal(nearest: &Recorded, fails: Option<&Evaluation>, files: &PageFiles) -> Markup {
+/// Returns the outcome of the design that is nearest to inserting, advice, and a drawing of its nominal start; `fails` is
+/// its evaluation, and whether it would insert without the robot's stop.
+fn nominal(nearest: &Recorded, fails: Option<(&Evaluation, bool)>, files: &PageFiles) -> Markup {
     html! {
         div.whole {
-            @if let Some(fails) = fails {
+            @if let Some((fails, by_robot)) = fails {
                 p {
                     "Nearest to inserting: " (evaluated(nearest)) ". \
-                    Its nominal start ends with " b { (outcome(fails.window.nominal)) } (stop_words(fails.nominal_stop())) ". " (remedy(fails.window.nominal, fails.nominal_stop())) "."
+                    Its nominal start ends with " b { (outcome(fails.window.nominal)) } (stop_words(fails.nominal_stop())) ". " (remedy(fails.window.nominal, fails.nominal_stop(), by_robot)) "."
                 }
             }
             @if let Some(svg) = &files.nominal {

@@ -37,8 +37,8 @@ fn record(evaluations: Vec<Recorded>) -> StudyRecord {
     let fixture = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/fixtures/study");
     let fixture = StudyRecord::load(&fixture).unwrap();
     let (seed, budget) = (7, evaluations.len() as u64);
-    let config =
-        StudyConfig { seed, budget, provenance: provenance.clone(), ..fixture.config.clone() };
+    let (own, robot) = (provenance.clone(), "servo".to_owned());
+    let config = StudyConfig { seed, budget, robot, provenance: own, ..fixture.config.clone() };
     let segments = vec![Segment { first: 0, provenance }];
     StudyRecord { config, segments, evaluations, confirmation_due: false, ..fixture }
 }
@@ -194,6 +194,33 @@ fn a_measured_design_shows_its_range_on_a_robot() {
     let (bar, _) = bar.split_once("</div>").expect("its end");
     assert!(name.contains("20°: 4.1 mm, ends not recorded") && bar.contains("left:0.0%"), "{bar}");
     assert!(!bar.contains("<b"), "no start to be offset from: {bar}");
+}
+
+fn other_input(config: &mut StudyConfig, role: &str) {
+    config.provenance.input_sha256.insert(role.to_owned(), "other".to_owned());
+}
+
+#[test]
+fn a_published_finger_is_recommended_for_the_setup_of_the_publication_only() {
+    type Change = fn(&mut StudyConfig);
+    let recommended = |change: Change| {
+        let mut study = record(vec![walked(0, [20.0, 20.0])]);
+        change(&mut study.config);
+        crate::answer::Answer::of(&study).use_now().is_some()
+    };
+    let changes: [(Change, bool); 8] = [
+        (|config| config.robot = "ur5e".to_owned(), true),
+        (|config| config.conclusion.robot_file = ROBOTS[0].file.to_owned(), true),
+        (|config| config.robot = "rigid".to_owned(), false),
+        (|config| config.conclusion.robot_file = "servo.toml".to_owned(), false),
+        (|config| config.conclusion.task_files = vec!["usb.toml".to_owned()], false),
+        (|config| other_input(config, "stiffness"), false),
+        (|config| other_input(config, "cell"), false),
+        (|config| other_input(config, "finger"), false),
+    ];
+    for (at, (change, expected)) in changes.into_iter().enumerate() {
+        assert_eq!(recommended(change), expected, "{at}");
+    }
 }
 
 #[test]

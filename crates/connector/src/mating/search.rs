@@ -136,7 +136,8 @@ fn rests([s, s_inner]: &Coarse, [p, p_inner]: &Coarse, passed: f32) -> HeightMap
     let height = |shift: [i32; 2]| {
         let z = rest(s, p_inner, shift, range[1]);
         let z = if z < range[1] { z.max(rest(s_inner, p, shift, range[1])) } else { z };
-        z.clamp(range[0], range[1])
+        // Not `clamp`: a part that is thinner than a cell has an empty map, and the range is empty.
+        z.min(range[1]).max(range[0])
     };
     map.heights = map.cells().map(height).collect();
     map

@@ -524,3 +524,11 @@ fn random_sockets_of_one_to_three_holes() {
     }
     assert!(missed.is_empty(), "{} missed: {missed:#?}", missed.len());
 }
+
+/// Its maps are empty where it is seen from its edge.
+#[test]
+fn a_plate_thinner_than_a_cell_fits_no_block() {
+    let (plate, socket) =
+        (block([0.0; 2], [5.0; 2], [0.0, 0.2]), block([0.0; 2], [20.0; 2], [-8.0, 0.0]));
+    assert!(matches!(mates(&plate, &socket, &NEVER), Err(MatingError::NoFit)));
+}

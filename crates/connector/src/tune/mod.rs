@@ -1,5 +1,6 @@
 //! Search for a strategy that inserts with a soft, a medium and a stiff finger.
 
+mod choice;
 mod tuner;
 mod variables;
 
@@ -10,7 +11,6 @@ use crate::plan::{Family, has_core};
 use ask_tell::{Grid, GridPoint, Observation, OptimizerKind};
 use input::InputError;
 use input::units::{DEG, MM};
-use insertion::evaluation::INDIFFERENCE_MM;
 use insertion::trial::Conditions;
 use insertion::{DesignError, Finger, Outcome, Strategy, Task};
 use rayon::prelude::*;
@@ -149,28 +149,16 @@ impl Tuned {
         tried.map(|tried| tried.force_n).filter(|force| *force > 0.0).min_by(f64::total_cmp)
     }
 
-    /// Adds strategies that were tried. A strategy of a later stage becomes the best one if its score is larger by
-    /// [`INDIFFERENCE_MM`]; within a stage, or if the best one fails, any improvement is enough.
+    /// Adds strategies that were tried, and recommends one of all.
     fn add(&mut self, stage: Stage, tried: Vec<(String, Candidate)>, effort: &Effort) {
         for (change, last) in tried {
             self.windows += last.cost;
             let best = self.steps.get(self.best).map_or(last.score, |best| best.tried.score);
             let text = format!("{:.1} mm so far; {change}", best.max(last.score).max(0.0));
             (effort.progress)(&text, last.cost, self.windows, effort.budget.into());
-            let second = self.steps.len() == 1;
-            let better = self.steps.get(self.best).is_some_and(|best| {
-                let (own, best) = (best.stage == stage, &best.tried);
-                let margin = if best.inserts() && !own { INDIFFERENCE_MM } else { 0.0 };
-                // A centred start is preferred to one near the end of an equally wide window.
-                let centred = second
-                    && last.side_mm() >= best.side_mm() + INDIFFERENCE_MM
-                    && last.score >= best.score - INDIFFERENCE_MM;
-                last.score > best.score + margin || centred
-            });
-            if better {
-                self.best = self.steps.len();
-            }
+            let nearest = if last.score > best { self.steps.len() } else { self.best };
             self.steps.push(Step { stage, change, tried: last, turned_mm: None });
+            self.best = self.recommended(&self.inserting()).unwrap_or(nearest);
         }
     }
 
@@ -243,44 +231,36 @@ impl Tuned {
     /// Largest number of windows measured by [`Tuned::check`].
     const CHECKS: usize = CHANGES * EACH + (TURNED.end - TURNED.start) * FINALISTS;
 
-    /// Recommends the strategy with the widest range under a turned socket, and measures it under all changes.
+    /// Recommends a strategy by its range under a turned socket, and measures it under all changes.
     fn check(&mut self, tuner: &Tuner) -> Result<(), DesignError> {
-        let inserts = |place: &usize| self.steps[*place].tried.inserts();
-        let mut order: Vec<_> = (0..self.steps.len()).filter(inserts).collect();
-        let score: Vec<_> = self.steps.iter().map(|step| step.tried.score).collect();
-        order.sort_by(|&a, &b| score[b].total_cmp(&score[a]));
-        // The best strategy of the earlier stages comes first: a searched one replaces it only if its range under a
-        // turned socket is larger.
-        let earlier = order.iter().position(|&place| self.steps[place].stage < Stage::Search);
-        earlier.iter().for_each(|&at| order[..=at].rotate_right(1));
-        let mut most = (self.best, f64::NEG_INFINITY);
-        let (mut checked, mut failed) = (0, Vec::new());
-        for place in order {
+        let mut order = self.inserting();
+        // The best strategy of the earlier stages comes first.
+        let earlier = order.iter().filter(|(at, _)| self.steps[*at].stage < Stage::Search);
+        let earlier = self.recommended(&earlier.copied().collect::<Vec<_>>());
+        order.sort_by(|a, b| b.1.total_cmp(&a.1));
+        order.sort_by_key(|(place, _)| Some(*place) != earlier);
+        let (mut checked, mut failed) = (Vec::new(), Vec::new());
+        for (place, range_mm) in order {
             let strategy = &self.steps[place].tried.strategy;
             let with_tilt = failed.iter().filter(|&&tilt| tilt == strategy.tilt).count();
-            if checked == FINALISTS || score[place] <= most.1 + INDIFFERENCE_MM {
-                break;
-            }
-            if with_tilt == MAX_FAILED {
+            let with = [&checked[..], &[(place, range_mm)]].concat();
+            let full = checked.len() + failed.len() == FINALISTS || with_tilt == MAX_FAILED;
+            if full || self.recommended(&with) == self.recommended(&checked) {
                 continue;
             }
-            checked += 1;
             let turned = robustness(tuner, strategy, &tuner.others[1..2], TURNED)?;
             if tuner.stopped() {
                 return Ok(());
             }
             self.windows += turned.len();
             let turned = turned.iter().map(|one| one.least_range_mm).fold(f64::INFINITY, f64::min);
-            if turned <= 0.0 {
-                failed.push(strategy.tilt);
+            match turned > 0.0 {
+                true => checked.push((place, turned.min(range_mm))),
+                false => failed.push(strategy.tilt),
             }
             self.steps[place].turned_mm = Some(turned);
-            let least = turned.min(score[place]);
-            if least > most.1 + INDIFFERENCE_MM {
-                most = (place, least);
-            }
         }
-        self.best = most.0;
+        self.best = self.recommended(&checked).or(earlier).unwrap_or(self.best);
         let kept = robustness(tuner, &self.best().tried.strategy, &tuner.others, 0..CHANGES)?;
         if !tuner.stopped() {
             self.windows += kept.len() * tuner.others.len();

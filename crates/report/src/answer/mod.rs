@@ -14,9 +14,10 @@ pub mod words;
 
 use calibration::next::BestMeasured;
 use calibration::rank_correlation::{Order, RankCorrelation, errors_percent, rank_correlation};
-use input::shipped::TASKS;
+use input::shipped::{ROBOTS, STIFFNESS, Shipped, TASKS};
 use insertion::{Design, Evaluation, Measure};
-use study::{BenchPrediction, FINGER, Recorded, StudyConfig, StudyRecord, Volume, Walked, volume};
+use study::{BenchPrediction, CELL, FINGER, Recorded, StudyConfig, StudyRecord, Volume, Walked};
+use study::{sha256_hex, volume};
 
 pub use force::ExcessForce;
 use recommended::firm_range_mm;
@@ -26,6 +27,9 @@ pub use start::Start;
 pub use ties::{SafeChoice, Spread, Ties};
 pub use trust::{MeasuredFinger, Trust};
 pub use verdict::{Verdict, expectation};
+
+/// Shipped robots that represent the robot of the published measurements, a UR5e.
+const PUBLICATION_ROBOTS: [&str; 3] = ["servo", "ur5e", "ur5e_position"];
 
 /// Answer of a study.
 #[derive(Debug, Clone)]
@@ -232,14 +236,19 @@ impl<'a> Answer<'a> {
     }
 
     /// Returns the best published finger, if measurements do not support the best one in simulation, with which the robot
-    /// does not stop, and only the range matters: the published fingers have no other measured values. `None` for a user's
-    /// task or finger file, of which they are not.
+    /// does not stop, and only the range matters: the published fingers have no other measured values. `None` for another
+    /// task, robot, cell or finger than those of the publication.
     fn best_published(&self) -> Option<BestMeasured> {
-        let StudyConfig { objective, constraints, conclusion, provenance, .. } =
+        let StudyConfig { robot, objective, constraints, conclusion, provenance, .. } =
             &self.record.config;
-        let shipped = |file: &String| TASKS.iter().any(|task| task.file == file);
-        let published = conclusion.task_files.iter().all(shipped)
-            && !provenance.input_sha256.contains_key(FINGER);
+        let is_of = |all: &[Shipped], file: &str| all.iter().any(|shipped| shipped.file == file);
+        let (inputs, robot_file) = (&provenance.input_sha256, &conclusion.robot_file);
+        let stiffness = sha256_hex(STIFFNESS[0].text.as_bytes());
+        let published = conclusion.task_files.iter().all(|file| is_of(TASKS, file))
+            && PUBLICATION_ROBOTS.contains(&robot.as_str())
+            && (robot_file.is_empty() || is_of(ROBOTS, robot_file))
+            && inputs.get("stiffness").is_none_or(|hash| *hash == stiffness)
+            && ![CELL, FINGER].iter().any(|role| inputs.contains_key(*role));
         let by_range = objective.single() == Some(Measure::Range) && constraints.is_empty();
         let applies = published && by_range && self.stopped().is_none() && self.is_refuted();
         let (design, range_mm) = self.best_measured().filter(|_| applies)?;

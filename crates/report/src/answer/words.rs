@@ -100,11 +100,12 @@ const REMEDIES: [&str; 5] = [
 ];
 
 /// Returns advice for a nominal start that ends with this outcome, as sentences without the last full stop. A plug that
-/// misses is pressed on the rim, which stops a robot, too; a robot with a low limit stops before it finds the opening.
-pub fn remedy(nominal: Outcome, robot_stopped: bool) -> String {
+/// misses is pressed on the rim, which stops a robot, too; a robot with a low limit stops before it finds the opening:
+/// `by_robot`, if the start would insert without the stop.
+pub fn remedy(nominal: Outcome, robot_stopped: bool, by_robot: bool) -> String {
     let own = REMEDIES[usize::from(nominal.failure().unwrap_or(0))];
     match (robot_stopped, nominal) {
-        (true, Outcome::Failed(FailureClass::PlugMissed)) => {
+        (true, Outcome::Failed(FailureClass::PlugMissed)) if !by_robot => {
             format!("{own}. {STOP_REMEDY}")
         }
         (true, _) => STOP_REMEDY.to_owned(),

@@ -5,8 +5,11 @@ use crate::answer::words::rounded;
 use contact::scene::{Geom, Pose};
 use contact::{ContactPoint, shapes};
 use input::units::MM;
+use insertion::Part;
 use insertion::outcome::stop_words;
+use insertion::task::{Plug, Solid};
 use insertion::trial::record::Frame;
+use nalgebra::Vector3;
 use serde_json::{Value, json};
 
 /// Smallest time between two frames of the page, s.
@@ -15,21 +18,44 @@ const INTERVAL: f64 = 6e-3;
 const MAX_FRAMES: f64 = 500.0;
 /// Height at which the jaws are drawn above the shoulder of the part, mm.
 const JAW_MM: f64 = 45.0;
+/// Smallest gap along z between parts of a plug that is closed in the drawing, m.
+const GAP: f64 = 0.1 * MM;
 
 /// Returns kind, key of the poses and shapes of each body; the socket does not move, finger 0 is at -y.
-fn bodies(film: &Film) -> [(&'static str, &'static str, Vec<Geom>); 7] {
+fn bodies(film: &Film) -> [(&'static str, &'static str, Vec<Geom>); 8] {
     let task = film.task;
     let drawn = |body: usize| task.left_out[body].iter().map(|part| part.geom()).collect();
     let tip = |side| film.pad.geoms(film.task.grip.shoulder(), side);
     [
         ("socket", "socket", task.socket.iter().map(|part| part.geom()).collect()),
         ("plug", "plug", task.plug.rigid().map(|part| part.geom()).collect()),
+        ("link", "plug", links(&task.plug)),
         ("finger", "finger0", tip(-1.0)),
         ("finger", "finger1", tip(1.0)),
         ("spring", "plug", drawn(0)),
         ("spring", "socket", drawn(1)),
         ("plug", "latch", task.plug.latch_parts().map(|part| part.geom()).collect()),
     ]
+}
+
+/// Returns boxes that fill the gaps along z between the parts of a plug: an imported plug has no parts where the socket
+/// cannot touch it.
+fn links(plug: &Plug) -> Vec<Geom> {
+    type Bounds = [Vector3<f64>; 2];
+    let join = |[a, b]: Bounds, [c, d]: Bounds| [a.inf(&c), b.sup(&d)];
+    let bounds = |part: &Part| part.solid.corners().iter().map(|p| [p.coords; 2]).reduce(join);
+    let mut parts: Vec<Bounds> = plug.rigid().filter_map(bounds).collect();
+    parts.sort_by(|[a, _], [b, _]| a.z.total_cmp(&b.z));
+    let link = |at: usize| {
+        let [a, b] = parts[..at].iter().copied().reduce(join)?;
+        let [c, d] = parts[at..].iter().copied().reduce(join)?;
+        // The intersection of both in x and y, and the gap between them along z.
+        let (low, high) = (a.sup(&c), b.inf(&d));
+        let (min, max) = (low.xy().push(high.z), high.xy().push(low.z));
+        let part = Part { name: String::new(), solid: Solid::Box { min, max }, friction: None };
+        (max - min).iter().all(|size| *size > GAP).then(|| part.geom())
+    };
+    (1..parts.len()).filter_map(link).collect()
 }
 
 /// Returns the data of a film in mm, s, N and degrees.

@@ -85,8 +85,9 @@ pub(super) fn player(title: &str, data: &str) -> String {
                 "Drag to rotate, scroll or pinch to zoom, hold Shift and drag to move up and down; \
                 click a curve to go to that time. Red arrows: force of the socket on the plug; blue: \
                 forces of the fingers on it. Drawn are the simulated parts: the faces that plug and \
-                socket can touch, and the gripped part; violet, without contact: contact springs and other \
-                faces that overlap when mated. Between fingertip and jaw the finger is \
+                socket can touch, and the gripped part; pale, schematic: the plug where its faces are left \
+                out between them; violet, without contact: contact springs and other faces that overlap \
+                when mated. Between fingertip and jaw the finger is \
                 schematic; the slider exaggerates its deflection."
             }
             (PreEscaped(DATA)) (PreEscaped(data)) (PreEscaped("</script>"))

@@ -1,10 +1,12 @@
 //! Page and plot of synthetic recordings.
 
 use super::*;
+use ask_tell::statistics::span;
 use contact::ContactPoint;
 use contact::scene::Pose;
 use input::shipped::TASKS;
 use input::units::MM;
+use insertion::task::Solid;
 use insertion::trial::record::Frame;
 use insertion::trial::{PhaseEnd, Poses};
 use insertion::{FailureClass, Outcome, Stage, Trial};
@@ -92,4 +94,29 @@ fn the_axes_of_the_plot_have_units() {
     let (task, recording) = (task(), recording());
     let svg = curve_svg(&film("a", &task, &recording)).unwrap();
     assert!(svg.contains("force plug to socket (N)") && svg.contains("top (mm)"));
+}
+
+/// The shipped plugs have no gap along z.
+#[test]
+fn a_gap_between_the_parts_of_a_plug_is_drawn_as_a_link() {
+    let (mut task, recording) = (task(), recording());
+    let links = |task: &Task| -> Vec<serde_json::Value> {
+        let json = film::data(&film("a", task, &recording));
+        let bodies = json["bodies"].as_array().unwrap().iter();
+        bodies.filter(|body| body["kind"] == "link").map(|body| body["points"].clone()).collect()
+    };
+    assert!(links(&task).is_empty());
+    let part = |name: &str, min: [f64; 3], max: [f64; 3]| insertion::Part {
+        name: name.to_owned(),
+        solid: Solid::Box { min: Vector3::from(min) * MM, max: Vector3::from(max) * MM },
+        friction: None,
+    };
+    let grip = part("grip", [-2.0, -6.0, 40.0], [2.0, 6.0, 43.0]);
+    task.plug.parts = vec![grip, part("body", [-3.0, -4.0, 0.0], [1.0, 8.0, 32.0])];
+    task.plug.latch = None;
+    let links = links(&task);
+    let points: Vec<f64> =
+        links[0].as_array().unwrap().iter().map(|mm| mm.as_f64().unwrap()).collect();
+    let along = |axis: usize| span(points.iter().skip(axis).step_by(3));
+    assert_eq!((links.len(), [0, 1, 2].map(along)), (1, [[-2.0, 1.0], [-4.0, 6.0], [32.0, 40.0]]));
 }

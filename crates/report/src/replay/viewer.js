@@ -5,7 +5,7 @@
   const films = JSON.parse(document.getElementById("films").textContent);
   const at = (id) => document.getElementById(id);
   const end = Math.max(...films.map((film) => film.time[film.time.length - 1]));
-  const BODY = { plug: [0.91, 0.64, 0.24], finger: [0.3, 0.58, 0.35], beam: [0.45, 0.7, 0.48], socket: [0.55, 0.64, 0.78], spring: [0.62, 0.25, 0.66], contact: [0.85, 0.12, 0.12], grip: [0.15, 0.35, 0.85] };
+  const BODY = { plug: [0.91, 0.64, 0.24], link: [0.96, 0.84, 0.64], finger: [0.3, 0.58, 0.35], beam: [0.45, 0.7, 0.48], socket: [0.55, 0.64, 0.78], spring: [0.62, 0.25, 0.66], contact: [0.85, 0.12, 0.12], grip: [0.15, 0.35, 0.85] };
   const MM_PER_N = 0.12, LONGEST = 25, LEAST = 0.05;
   const state = { time: 0, playing: false, speed: 0.25, yaw: -0.55, pitch: 0.3, distance: 105, target: [0, 0, 8], bend: 1 };
 

@@ -160,7 +160,7 @@ fn a_force_that_the_connector_does_not_withstand_comes_first() {
     assert!(safe["peak_force_n"].as_f64() <= Some(8.25), "{safe}");
     // A tied finger keeps to the limit, and is named in place of the best.
     let near = study("near", 10.2);
-    assert!(near.starts_with("Best in simulation within the limit of force, "), "{near}");
+    assert!(near.starts_with("Best in simulation within the limit of force,"), "{near}");
     let near = studies.study("near", 30, &["--task", &studies.word("near.toml"), "--json"]).json();
     let (answer, left_out) = (&near["answer"], &near["answer"]["left_out"]);
     assert!(answer["force"].is_null() && left_out["peak_force_n"].as_f64() > Some(10.2), "{near}");

@@ -141,6 +141,8 @@ fn a_force_that_the_connector_does_not_withstand_comes_first() {
     assert_eq!(answer["answer"]["force"]["limit_n"], 6.5);
     assert_eq!(answer["answer"]["verdict"], "simulated");
     assert!(studies.read("weak/report.html").contains("<b>force</b> up to"));
+    let checked = optimize(&["task", "check", &studies.word("weak.toml")]).succeeds().to_owned();
+    assert!(checked.contains("exceeds the 6.5 N that the connector"), "{checked}");
     // A robot that stops near that force.
     let robot =
         include_str!("../robots/servo.toml").replace("stop_force_n = 150.0", "stop_force_n = 7.0");

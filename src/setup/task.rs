@@ -146,7 +146,8 @@ pub(crate) fn nominal_start(
     Ok((finger, trial))
 }
 
-/// Returns warnings about a trial of [`nominal_start`]: a weak grip, and a robot stop although the plug is seated.
+/// Returns warnings about a trial of [`nominal_start`]: a weak grip, a robot stop although the plug is seated, and a force
+/// that the connector does not withstand.
 pub(crate) fn nominal_warnings(task: &Task, trial: &Trial, robot: &Robot) -> Vec<String> {
     let stops = trial.outcome == Outcome::Inserted && trial.robot_stopped;
     let stops = stops.then(|| {
@@ -155,7 +156,11 @@ pub(crate) fn nominal_warnings(task: &Task, trial: &Trial, robot: &Robot) -> Vec
             "the plug is seated, but the robot {robot} stops; `optimize evaluate` computes the longest push without a stop"
         )
     });
-    nominal::weak_grip(task, trial).into_iter().chain(stops).collect()
+    let peak_n = trial.peak_force_n;
+    let exceeded = task.limits.force.filter(|limit| peak_n > *limit).map(|limit| {
+        format!("the peak force, {peak_n:.1} N, exceeds the {limit} N that the connector withstands (limits.force_n)")
+    });
+    nominal::weak_grip(task, trial).into_iter().chain(stops).chain(exceeded).collect()
 }
 
 /// Shows a warning of a weak grip in the trial of [`nominal_start`].

@@ -158,7 +158,7 @@ WRONG = [
      "engine: unknown value `direkt`; .*did you mean `direct`"),
     (lambda: fo.evaluate(density=20), TypeError, r"evaluate\(\) missing a required argument: 'task'"),
     (lambda: fo.Study.create("usb", budget="12"), TypeError, "budget: has to be a whole number or None, not str"),
-    (lambda: fo.new_task("plug", round=(1, 2, 3)), TypeError, "round: has to be 2 numbers, not 3"),
+    (lambda: fo.new_task("plug", round=(1, 2, 3)), TypeError, "round: has to be 2 numbers or None, not 3"),
 ]
 
 

@@ -208,11 +208,10 @@ fn a_published_finger_is_recommended_for_the_setup_of_the_publication_only() {
         change(&mut study.config);
         crate::answer::Answer::of(&study).use_now().is_some()
     };
-    let changes: [(Change, bool); 8] = [
+    let changes: [(Change, bool); 7] = [
         (|config| config.robot = "ur5e".to_owned(), true),
-        (|config| config.conclusion.robot_file = ROBOTS[0].file.to_owned(), true),
         (|config| config.robot = "rigid".to_owned(), false),
-        (|config| config.conclusion.robot_file = "servo.toml".to_owned(), false),
+        (|config| config.conclusion.robot_file = "robots/servo.toml".to_owned(), false),
         (|config| config.conclusion.task_files = vec!["usb.toml".to_owned()], false),
         (|config| other_input(config, "stiffness"), false),
         (|config| other_input(config, "cell"), false),

@@ -14,7 +14,7 @@ pub mod words;
 
 use calibration::next::BestMeasured;
 use calibration::rank_correlation::{Order, RankCorrelation, errors_percent, rank_correlation};
-use input::shipped::{ROBOTS, STIFFNESS, Shipped, TASKS};
+use input::shipped::{STIFFNESS, TASKS};
 use insertion::{Design, Evaluation, Measure};
 use study::{BenchPrediction, CELL, FINGER, Recorded, StudyConfig, StudyRecord, Volume, Walked};
 use study::{sha256_hex, volume};
@@ -241,12 +241,12 @@ impl<'a> Answer<'a> {
     fn best_published(&self) -> Option<BestMeasured> {
         let StudyConfig { robot, objective, constraints, conclusion, provenance, .. } =
             &self.record.config;
-        let is_of = |all: &[Shipped], file: &str| all.iter().any(|shipped| shipped.file == file);
-        let (inputs, robot_file) = (&provenance.input_sha256, &conclusion.robot_file);
+        let shipped = |file: &String| TASKS.iter().any(|task| task.file == file);
+        let inputs = &provenance.input_sha256;
         let stiffness = sha256_hex(STIFFNESS[0].text.as_bytes());
-        let published = conclusion.task_files.iter().all(|file| is_of(TASKS, file))
+        let published = conclusion.task_files.iter().all(shipped)
             && PUBLICATION_ROBOTS.contains(&robot.as_str())
-            && (robot_file.is_empty() || is_of(ROBOTS, robot_file))
+            && conclusion.robot_file.is_empty()
             && inputs.get("stiffness").is_none_or(|hash| *hash == stiffness)
             && ![CELL, FINGER].iter().any(|role| inputs.contains_key(*role));
         let by_range = objective.single() == Some(Measure::Range) && constraints.is_empty();

@@ -13,7 +13,8 @@ use study::{Recorded, StudyRecord};
 /// or not at all if the objective is not a length.
 #[derive(Debug, Clone)]
 pub struct Ties<'a> {
-    /// Designs in the order of their evaluation, including the best design, each with its loss against that design, in the unit of the first objective; negative if it is better.
+    /// Designs in the order of their evaluation, including the best design, each with its loss against that design, in the
+    /// unit of the first objective; negative if it is better.
     pub designs: Vec<(&'a Recorded, f64)>,
     /// Values over these designs of each parameter of the space whose bounds differ.
     pub spread: Vec<Spread<'a>>,
